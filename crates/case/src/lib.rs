@@ -1,0 +1,1 @@
+//! Case files of jstsph: a TOML schema with units, checked and turned into a simulation.

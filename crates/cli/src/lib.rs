@@ -1,0 +1,1 @@
+//! The jstsph command: run, check and inspect total Lagrangian SPH simulations of metals.

@@ -1,0 +1,1 @@
+//! Rigid obstacles for particle methods: signed distance, contact laws, reaction forces.

@@ -1,0 +1,1 @@
+//! Shapes, particle lattices with exact volumes, selections and neighbour search for particle methods.

@@ -1,0 +1,1 @@
+//! Kernels and corrected total Lagrangian SPH operators between particles and evaluation points.
