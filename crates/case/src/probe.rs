@@ -1,0 +1,94 @@
+//! `[[probe]]`: numbers read off the running simulation.
+
+use jstsph_geometry::Dimension;
+use jstsph_solver::{ModelBody, Probe, ProbeKind};
+use jstsph_tensor::Vec3;
+
+use crate::document::Node;
+use crate::error::Problem;
+use crate::schema;
+use crate::section::{Section, components};
+use crate::selection::read_where;
+
+/// Reads one probe; `taken` are the names of those before it.
+pub(crate) fn read_probe(
+    node: &Node,
+    number: usize,
+    bodies: &[ModelBody],
+    dimension: Dimension,
+    taken: &[Probe],
+) -> Result<(Probe, toml::Table), Problem> {
+    let mut section = Section::open(node, &format!("probe.{number}"), schema::PROBE)?;
+    let name = section.text("name")?;
+    crate::body::check_name(&section, &name)?;
+    if taken.iter().any(|probe| probe.name == name) {
+        return Err(section.problem("name", format!("two probes are called `{name}`")));
+    }
+    section.rename(format!("probe.{name}"));
+    let form = section.one_of(&["extent", "radius", "statistic", "point", "line"])?;
+    let field = section.need(form)?;
+    let mut part = Section::open(&field.node, &field.path, field.kind.keys())?;
+    let kind = match form {
+        "extent" => ProbeKind::Extent {
+            particles: particles(&mut part, bodies, dimension)?,
+            axis: axis(&mut part, dimension)?,
+        },
+        "radius" => ProbeKind::Radius {
+            particles: particles(&mut part, bodies, dimension)?,
+            axis: part.choice("axis", AXES)?,
+            point: if part.has("point") {
+                part.vector("point", dimension)?
+            } else {
+                part.record("point", components(&Vec3::zeros(), dimension));
+                Vec3::zeros()
+            },
+        },
+        "statistic" => ProbeKind::Statistic {
+            particles: particles(&mut part, bodies, dimension)?,
+            field: part.choice("field", schema::FIELDS)?,
+            statistic: part.choice("of", schema::STATISTICS)?,
+        },
+        "point" => ProbeKind::Point {
+            position: part.vector("position", dimension)?,
+            field: part.choice("field", schema::FIELDS)?,
+        },
+        _ => ProbeKind::Line {
+            from: part.vector("from", dimension)?,
+            to: part.vector("to", dimension)?,
+            count: part.count("count")?.unwrap_or(2),
+            field: part.choice("field", schema::FIELDS)?,
+        },
+    };
+    section.record(form, part.finish());
+    Ok((Probe { name, kind }, section.finish()))
+}
+
+const AXES: &[(&str, usize)] = &[("x", 0), ("y", 1), ("z", 2)];
+
+/// An axis along which something can be measured: not z in plane strain.
+fn axis(part: &mut Section<'_>, dimension: Dimension) -> Result<usize, Problem> {
+    part.choice("axis", &AXES[..dimension.count()])
+}
+
+/// Selected particles as indices into the whole simulation.
+fn particles(
+    part: &mut Section<'_>,
+    bodies: &[ModelBody],
+    dimension: Dimension,
+) -> Result<Vec<u32>, Problem> {
+    let selected = read_where(part, bodies, dimension)?;
+    let before: usize = bodies[..selected.body]
+        .iter()
+        .map(|body| body.body.positions.len())
+        .sum();
+    let first = u32::try_from(before).map_err(|_| {
+        part.problem(
+            "where",
+            format!(
+                "the bodies before this one have {before} particles, more than {}",
+                u32::MAX
+            ),
+        )
+    })?;
+    Ok(selected.particles.iter().map(|a| a + first).collect())
+}

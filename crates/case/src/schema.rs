@@ -1,0 +1,225 @@
+//! Every key of a case file, described once: reading, defaults, error messages, the comments of
+//! resolved cases and `jstsph list` all use these tables.
+
+use crate::units::Measure;
+
+mod tables;
+
+pub(crate) use tables::{
+    BIHARMONIC, BOX, FORMULATIONS, HALF_SPACE, INITIAL_VELOCITY, INTEGRATORS, JST, LAPLACIANS,
+    PRECISIONS, PROFILE, QUADRATURES, ROTATION, SIDES, SIGNAL, SMOOTHING_REFERENCES, STATISTICS,
+    VELOCITY_COMPONENTS, WEIGHTS,
+};
+pub use tables::{
+    BODY, BOUNDARY, CASE, CHAIN, FIELDS, LATTICE, OBSTACLE, OBSTACLE_FORMS, OUTPUT, PROBE, SCHEME,
+    SELECTION, SHAPES, STABILISATION, TIME,
+};
+
+/// One key of a table.
+#[derive(Clone, Copy, Debug)]
+pub struct Key {
+    /// Name.
+    pub name: &'static str,
+    /// What it holds.
+    pub kind: Kind,
+    /// Whether it must be given, and what holds when it is not.
+    pub presence: Presence,
+    /// One line for the reader of a list.
+    pub meaning: &'static str,
+}
+
+/// What a key holds.
+#[derive(Clone, Copy, Debug)]
+pub enum Kind {
+    /// A number, SI or with a unit.
+    Number(Measure, Limit),
+    /// An integer not below the given one.
+    Count(usize),
+    /// `true` or `false`.
+    Flag,
+    /// Any text.
+    Text,
+    /// One of these texts.
+    Choice(fn() -> Vec<&'static str>),
+    /// One number per axis.
+    Vector(Measure),
+    /// A number, a table in time or an expression.
+    Signal(Measure),
+    /// One signal per axis.
+    Signals(Measure),
+    /// A table with exactly one of these keys.
+    OneOf(&'static [Key]),
+    /// A table.
+    Table(&'static [Key]),
+    /// A list of tables.
+    Tables(&'static [Key]),
+    /// A table with these keys, or what the words say.
+    TableOr(&'static [Key], &'static str),
+    /// Something else, described in words.
+    Other(&'static str),
+}
+
+/// Which numbers are allowed; only finite ones ever are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Limit {
+    /// Any.
+    Any,
+    /// Greater than zero.
+    Positive,
+    /// Zero or greater.
+    NotNegative,
+    /// Between two numbers, ends included.
+    Within(f64, f64),
+}
+
+impl Limit {
+    /// What the number must be, when it is not.
+    pub(crate) fn violated(self, value: f64) -> Option<String> {
+        let (allowed, message) = match self {
+            Self::Any => (true, "finite".to_owned()),
+            Self::Positive => (value > 0.0, "positive".to_owned()),
+            Self::NotNegative => (value >= 0.0, "zero or positive".to_owned()),
+            Self::Within(least, most) => (
+                (least..=most).contains(&value),
+                format!("between {least} and {most}"),
+            ),
+        };
+        if !value.is_finite() {
+            return Some("finite".to_owned());
+        }
+        (!allowed).then_some(message)
+    }
+}
+
+/// Whether a key must be given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Presence {
+    /// It must.
+    Required,
+    /// It need not; without it nothing happens.
+    Optional,
+    /// It need not; this TOML value holds without it.
+    Default(&'static str),
+    /// It need not; what holds without it depends on other keys, as described.
+    Derived(&'static str),
+}
+
+impl Kind {
+    /// What the key holds, in words.
+    #[must_use]
+    pub fn description(&self) -> String {
+        match self {
+            Self::Number(measure, limit) => {
+                let base = measure.description();
+                match limit {
+                    Limit::Any => base,
+                    Limit::Positive => format!("{base}, positive"),
+                    Limit::NotNegative => format!("{base}, zero or positive"),
+                    Limit::Within(least, most) => format!("{base}, {least} to {most}"),
+                }
+            }
+            Self::Count(least) => format!("an integer, at least {least}"),
+            Self::Flag => "true or false".to_owned(),
+            Self::Text => "a text".to_owned(),
+            Self::Choice(names) => names().join(" | "),
+            Self::Vector(measure) => format!("one number per axis, each {}", measure.description()),
+            Self::Signal(measure) => format!(
+                "{}: constant, {{ table = [[t, value], ...] }} or {{ expression = \"...\" }}",
+                measure.description()
+            ),
+            Self::Signals(measure) => format!(
+                "one value per axis, each {}: constant, table or expression",
+                measure.description()
+            ),
+            Self::OneOf(keys) => {
+                let names: Vec<&str> = keys.iter().map(|key| key.name).collect();
+                format!("a table with one of: {}", names.join(", "))
+            }
+            Self::Table(_) => "a table".to_owned(),
+            Self::Tables(_) => "a list of tables".to_owned(),
+            Self::TableOr(_, words) => format!("a table, or {words}"),
+            Self::Other(words) => (*words).to_owned(),
+        }
+    }
+
+    /// Unit in which a resolved case writes the number, when there is one.
+    pub(crate) fn unit(&self) -> Option<String> {
+        match self {
+            Self::Number(measure, _)
+            | Self::Vector(measure)
+            | Self::Signal(measure)
+            | Self::Signals(measure)
+                if *measure != Measure::NUMBER =>
+            {
+                Some(measure.to_string())
+            }
+            _ => None,
+        }
+    }
+
+    /// Keys of the tables below this key.
+    pub(crate) fn keys(&self) -> &'static [Key] {
+        match self {
+            Self::OneOf(keys) | Self::Table(keys) | Self::Tables(keys) | Self::TableOr(keys, _) => {
+                keys
+            }
+            _ => &[],
+        }
+    }
+}
+
+/// First entries of a list of pairs.
+pub(crate) fn names<T>(pairs: &[(&'static str, T)]) -> Vec<&'static str> {
+    pairs.iter().map(|(name, _)| *name).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(keys: &[Key], path: &str, visited: usize) -> usize {
+        let mut count = visited;
+        for (at, key) in keys.iter().enumerate() {
+            count += 1;
+            assert!(
+                !key.meaning.is_empty(),
+                "{path}.{} has no meaning",
+                key.name
+            );
+            assert!(
+                keys[..at].iter().all(|other| other.name != key.name),
+                "{path}.{} is described twice",
+                key.name
+            );
+            if let Presence::Default(text) = key.presence {
+                let value = text.parse::<toml::Value>();
+                assert!(
+                    value.is_ok(),
+                    "{path}.{}: default {text} is not TOML",
+                    key.name
+                );
+            }
+            count = check(key.kind.keys(), &format!("{path}.{}", key.name), count);
+        }
+        count
+    }
+
+    #[test]
+    fn every_key_is_described_once_and_its_default_is_toml() {
+        assert!(check(CASE, "case", 0) > 80);
+    }
+
+    #[test]
+    fn limits_refuse_what_they_say() {
+        assert_eq!(Limit::Positive.violated(0.0), Some("positive".to_owned()));
+        assert_eq!(Limit::NotNegative.violated(0.0), None);
+        assert_eq!(
+            Limit::Within(0.0, 1.0).violated(1.5),
+            Some("between 0 and 1".to_owned())
+        );
+        assert_eq!(
+            Limit::Any.violated(f64::INFINITY),
+            Some("finite".to_owned())
+        );
+    }
+}

@@ -1,0 +1,157 @@
+//! `[time]`, `[scheme]`, `[stabilisation]` and `[output]`.
+
+use jstsph_geometry::Dimension;
+use jstsph_solver::{Biharmonic, Integrator, Jst, Quadrature, Scheme, Stabilisation};
+use jstsph_sph::Kernel;
+
+use crate::case::{OutputSettings, TimeSettings};
+use crate::document::{Node, Value};
+use crate::error::Problem;
+use crate::schema::{self, Limit};
+use crate::section::{Field, Section, number};
+use crate::units::Measure;
+
+/// `[time]` with the integrator and the smallest step, which belong to the scheme.
+pub(crate) struct Time {
+    pub(crate) settings: TimeSettings,
+    pub(crate) integrator: Integrator,
+    pub(crate) smallest_time_step: f64,
+    pub(crate) resolved: toml::Table,
+}
+
+/// Reads `[time]`.
+pub(crate) fn read_time(node: &Node) -> Result<Time, Problem> {
+    let mut section = Section::open(node, "time", schema::TIME)?;
+    let end = section.number("end")?;
+    let integrator = section.choice("integrator", schema::INTEGRATORS)?;
+    let cfl = section.number_or(
+        "cfl",
+        if integrator == Integrator::Leapfrog {
+            0.5
+        } else {
+            0.3
+        },
+    )?;
+    let smallest_time_step = section.number("smallest_step")?;
+    Ok(Time {
+        settings: TimeSettings { end, cfl },
+        integrator,
+        smallest_time_step,
+        resolved: section.finish(),
+    })
+}
+
+/// Reads `[scheme]` and `[stabilisation]`; returns their resolved tables in this order.
+pub(crate) fn read_scheme(
+    scheme: &Node,
+    stabilisation: &Node,
+    time: &Time,
+) -> Result<(Scheme, toml::Table, toml::Table), Problem> {
+    let mut section = Section::open(scheme, "scheme", schema::SCHEME)?;
+    let quadrature = section.choice("quadrature", schema::QUADRATURES)?;
+    let bonds = quadrature == Quadrature::Bonds;
+    let kernels = Kernel::ALL.map(|kernel| (kernel.name(), kernel));
+    let formulation = section.choice("formulation", schema::FORMULATIONS)?;
+    let kernel = section.choice("kernel", &kernels)?;
+    let smoothing_ratio = section.number_or("smoothing_ratio", if bonds { 0.8 } else { 1.2 })?;
+    let reference = if bonds { "spacing" } else { "volume" };
+    let smoothing_reference = section.choice_or(
+        "smoothing_reference",
+        schema::SMOOTHING_REFERENCES,
+        reference,
+    )?;
+    let weights = section.choice("weights", schema::WEIGHTS)?;
+    let projection = section.flag_or("projection", !bonds)?;
+    let (stabilisation, resolved) = read_stabilisation(stabilisation, bonds)?;
+    let scheme = Scheme {
+        quadrature,
+        kernel,
+        smoothing_ratio,
+        smoothing_reference,
+        weights,
+        formulation,
+        integrator: time.integrator,
+        cfl: time.settings.cfl,
+        stabilisation,
+        projection,
+        smallest_time_step: time.smallest_time_step,
+    };
+    Ok((scheme, section.finish(), resolved))
+}
+
+fn read_stabilisation(node: &Node, bonds: bool) -> Result<(Stabilisation, toml::Table), Problem> {
+    let mut section = Section::open(node, "stabilisation", schema::STABILISATION)?;
+    let bare = bonds || section.has("jst");
+    let upwind = section.number_or("upwind", if bare { 0.0 } else { 0.3 })?;
+    let hourglass = section.number("hourglass")?;
+    let jst = match section.field("jst")? {
+        None => None,
+        Some(field) => {
+            let (jst, resolved) = read_jst(&field)?;
+            section.record("jst", resolved);
+            Some(jst)
+        }
+    };
+    let stabilisation = Stabilisation {
+        jst,
+        upwind,
+        hourglass,
+    };
+    Ok((stabilisation, section.finish()))
+}
+
+fn read_jst(field: &Field<'_>) -> Result<(Jst, toml::Table), Problem> {
+    let mut section = Section::open(&field.node, &field.path, schema::JST)?;
+    let harmonic = section.number("harmonic")?;
+    let coefficient = section.need("biharmonic")?;
+    let biharmonic = if matches!(coefficient.node.value, Value::Table(_)) {
+        let mut falling = Section::open(&coefficient.node, &coefficient.path, schema::BIHARMONIC)?;
+        let biharmonic = Biharmonic::FallingWithPlasticStrain {
+            initial: falling.number("initial")?,
+            last: falling.number("final")?,
+            strain: falling.number("plastic_strain")?,
+        };
+        section.record("biharmonic", falling.finish());
+        biharmonic
+    } else {
+        let value = number(
+            &coefficient.node,
+            &coefficient.path,
+            Measure::NUMBER,
+            Limit::NotNegative,
+        )?;
+        section.record("biharmonic", value);
+        Biharmonic::Constant(value)
+    };
+    let jst = Jst {
+        harmonic,
+        biharmonic,
+        on_jacobian: section.flag("on_jacobian")?,
+        laplacian: section.choice("laplacian", schema::LAPLACIANS)?,
+    };
+    Ok((jst, section.finish()))
+}
+
+/// Reads `[output]`.
+pub(crate) fn read_output(node: &Node, end: f64) -> Result<(OutputSettings, toml::Table), Problem> {
+    let mut section = Section::open(node, "output", schema::OUTPUT)?;
+    let settings = OutputSettings {
+        history_interval: section.number_or("history_interval", end / 500.0)?,
+        frame_interval: section.number_or("frame_interval", end / 50.0)?,
+        restart_interval: section.number_or("restart_interval", end / 10.0)?,
+        precision: section.choice("precision", schema::PRECISIONS)?,
+        compression: section.flag("compression")?,
+    };
+    Ok((settings, section.finish()))
+}
+
+/// Reads `dimension`.
+pub(crate) fn read_dimension(case: &mut Section<'_>) -> Result<Dimension, Problem> {
+    case.choice(
+        "dimension",
+        &[
+            ("plane-strain", Dimension::PlaneStrain),
+            ("3d", Dimension::Solid),
+        ],
+    )
+}

@@ -1,0 +1,139 @@
+//! What can be wrong with a shape, a lattice or a selection.
+
+use crate::Dimension;
+
+/// Everything that the constructors and selections of this crate refuse.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum GeometryError {
+    /// A length or coordinate is NaN or infinite.
+    #[error("{quantity} of the {item} is {value}; it must be a finite number of metres")]
+    NotFinite {
+        /// Shape or lattice the quantity belongs to.
+        item: &'static str,
+        /// The quantity's name.
+        quantity: &'static str,
+        /// The value given, m.
+        value: f64,
+    },
+    /// A length that must be positive is not.
+    #[error("{quantity} of the {item} is {value} m; it must be positive")]
+    NotPositive {
+        /// Shape or lattice the quantity belongs to.
+        item: &'static str,
+        /// The quantity's name.
+        quantity: &'static str,
+        /// The value given, m.
+        value: f64,
+    },
+    /// The shape does not exist in this dimension.
+    #[error("a {shape} cannot be used in {dimension}; use {remedy}")]
+    WrongDimension {
+        /// The shape's name.
+        shape: &'static str,
+        /// The dimension asked for.
+        dimension: Dimension,
+        /// What can be used instead.
+        remedy: &'static str,
+    },
+    /// The lattice does not fit the kind of shape.
+    #[error("a lattice given by {lattice} cannot fill a {shape}; give {remedy}")]
+    LatticeMismatch {
+        /// How the lattice was given.
+        lattice: &'static str,
+        /// The shape's name.
+        shape: &'static str,
+        /// What can be given instead.
+        remedy: &'static str,
+    },
+    /// No whole number of intervals of about the requested spacing fits.
+    #[error(
+        "spacing {spacing} m does not divide the {direction} of {length} m: the nearest is \
+         {nearest} m, more than {limit_percent} % off; choose another spacing or give counts"
+    )]
+    SpacingDeviates {
+        /// Spacing asked for, m.
+        spacing: f64,
+        /// Which length of the shape.
+        direction: &'static str,
+        /// That length, m.
+        length: f64,
+        /// Nearest spacing that fits, m.
+        nearest: f64,
+        /// Largest accepted deviation, percent.
+        limit_percent: f64,
+    },
+    /// A count of nodes, rings or layers is too small.
+    #[error("{quantity} is {value}; at least {minimum} needed")]
+    TooFew {
+        /// What is counted.
+        quantity: &'static str,
+        /// The count given.
+        value: usize,
+        /// The smallest accepted count.
+        minimum: usize,
+    },
+    /// The lattice would not fit into memory.
+    #[error("the lattice would have {count:.3e} nodes, the limit is {limit}; enlarge the spacing")]
+    TooManyNodes {
+        /// Nodes asked for (of the bounding lattice).
+        count: f64,
+        /// Largest accepted number.
+        limit: usize,
+    },
+    /// The body has no face of this name.
+    #[error("a {shape} has no face \"{face}\"; its faces are {}", available.join(", "))]
+    UnknownFace {
+        /// The name asked for.
+        face: String,
+        /// The shape's name.
+        shape: &'static str,
+        /// The names there are.
+        available: &'static [&'static str],
+    },
+    /// The face is an edge: its nodes can be selected, but it has no area.
+    #[error("\"{face}\" is an edge without area; give tractions on \"{instead}\"")]
+    FaceWithoutArea {
+        /// The name asked for.
+        face: String,
+        /// A face beside it that has an area.
+        instead: &'static str,
+    },
+    /// The normal of a half-space has no direction.
+    #[error("normal ({x}, {y}, {z}) of a half-space has no direction; give a non-zero vector")]
+    NoDirection {
+        /// First component.
+        x: f64,
+        /// Second component.
+        y: f64,
+        /// Third component.
+        z: f64,
+    },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_state_value_and_remedy() {
+        let error = GeometryError::UnknownFace {
+            face: "lid".into(),
+            shape: "box",
+            available: &["left", "right"],
+        };
+        assert_eq!(
+            error.to_string(),
+            "a box has no face \"lid\"; its faces are left, right"
+        );
+        let error = GeometryError::WrongDimension {
+            shape: "disc",
+            dimension: Dimension::Solid,
+            remedy: "a cylinder",
+        };
+        assert_eq!(
+            error.to_string(),
+            "a disc cannot be used in 3d; use a cylinder"
+        );
+    }
+}

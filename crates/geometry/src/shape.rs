@@ -1,0 +1,308 @@
+//! The solids that a body can be cut from.
+
+use std::f64::consts::PI;
+
+use jstsph_tensor::Vec3;
+
+use crate::{Axis, Dimension, GeometryError};
+
+/// A solid in its undeformed position; all lengths in m.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// Axis-parallel box; a rectangle in plane strain, where the z components are ignored.
+    Box {
+        /// Smallest coordinates.
+        min: Vec3,
+        /// Largest coordinates.
+        max: Vec3,
+    },
+    /// Circular disc in the plane z = 0; plane strain only.
+    Disc {
+        /// Centre; its z component is ignored.
+        centre: Vec3,
+        /// Radius.
+        radius: f64,
+    },
+    /// Right circular cylinder; three dimensions only.
+    Cylinder {
+        /// Centre of the bottom face.
+        base: Vec3,
+        /// Direction from the bottom to the top face.
+        axis: Axis,
+        /// Radius.
+        radius: f64,
+        /// Distance of the end faces.
+        height: f64,
+    },
+}
+
+/// Names of the axes as they stand in messages.
+const SIZES: [&str; 3] = ["size along x", "size along y", "size along z"];
+
+impl Shape {
+    /// The word for this shape in case files and messages.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Box { .. } => "box",
+            Self::Disc { .. } => "disc",
+            Self::Cylinder { .. } => "cylinder",
+        }
+    }
+
+    /// Names of the faces (and of the edges that can be selected).
+    ///
+    /// * box, plane strain: left −x, right +x, bottom −y, top +y;
+    /// * box, 3D: left −x, right +x, front −y, back +y, bottom −z, top +z;
+    /// * disc: rim;
+    /// * cylinder: base, top, side, and the edges rim_base and rim_top, which have no area.
+    #[must_use]
+    pub const fn faces(&self, dimension: Dimension) -> &'static [&'static str] {
+        match (self, dimension) {
+            (Self::Box { .. }, Dimension::PlaneStrain) => &["left", "right", "bottom", "top"],
+            (Self::Box { .. }, Dimension::Solid) => {
+                &["left", "right", "front", "back", "bottom", "top"]
+            }
+            (Self::Disc { .. }, _) => &["rim"],
+            (Self::Cylinder { .. }, _) => &["base", "top", "side", "rim_base", "rim_top"],
+        }
+    }
+
+    /// Volume, m³ (of 1 m thickness in plane strain).
+    #[must_use]
+    pub fn volume(&self, dimension: Dimension) -> f64 {
+        match self {
+            Self::Box { min, max } => {
+                let size = max - min;
+                match dimension {
+                    Dimension::PlaneStrain => size.x * size.y,
+                    Dimension::Solid => size.x * size.y * size.z,
+                }
+            }
+            Self::Disc { radius, .. } => PI * radius * radius,
+            Self::Cylinder { radius, height, .. } => PI * radius * radius * height,
+        }
+    }
+
+    /// Corners of the smallest axis-parallel box around the shape, m.
+    #[must_use]
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        match self {
+            Self::Box { min, max } => (*min, *max),
+            Self::Disc { centre, radius } => {
+                let extent = Vec3::new(*radius, *radius, 0.0);
+                (centre - extent, centre + extent)
+            }
+            Self::Cylinder {
+                base,
+                axis,
+                radius,
+                height,
+            } => {
+                let (mut low, mut high) = (base.add_scalar(-radius), base.add_scalar(*radius));
+                low[axis.index()] = base[axis.index()];
+                high[axis.index()] = base[axis.index()] + height;
+                (low, high)
+            }
+        }
+    }
+
+    /// Euclidean distance of `x` from the surface, m; negative inside.
+    ///
+    /// Discs, and boxes without extent along z, are unbounded along z.
+    #[must_use]
+    pub fn signed_distance(&self, x: &Vec3) -> f64 {
+        match self {
+            Self::Box { min, max } => {
+                let beyond = (x - (min + max) * 0.5).abs() - (max - min) * 0.5;
+                if max.z > min.z {
+                    outside_distance(&[beyond.x, beyond.y, beyond.z])
+                } else {
+                    outside_distance(&[beyond.x, beyond.y])
+                }
+            }
+            Self::Disc { centre, radius } => (x - centre).xy().norm() - radius,
+            Self::Cylinder {
+                base,
+                axis,
+                radius,
+                height,
+            } => {
+                let offset = x - base;
+                let [a, b] = axis.across();
+                let along = (offset[axis.index()] - 0.5 * height).abs() - 0.5 * height;
+                outside_distance(&[offset[a].hypot(offset[b]) - radius, along])
+            }
+        }
+    }
+
+    /// Checks that the shape exists in this dimension and has a finite, positive extent.
+    ///
+    /// # Errors
+    /// [`GeometryError::WrongDimension`], [`GeometryError::NotFinite`] or
+    /// [`GeometryError::NotPositive`].
+    pub fn validate(&self, dimension: Dimension) -> Result<(), GeometryError> {
+        let item = self.name();
+        let wrong = |remedy| {
+            Err(GeometryError::WrongDimension {
+                shape: item,
+                dimension,
+                remedy,
+            })
+        };
+        match (self, dimension) {
+            (Self::Disc { .. }, Dimension::Solid) => return wrong("a cylinder"),
+            (Self::Cylinder { .. }, Dimension::PlaneStrain) => return wrong("a disc or a box"),
+            _ => {}
+        }
+        let coordinates = |quantity, point: &Vec3| {
+            point
+                .iter()
+                .take(dimension.count())
+                .try_for_each(|&value| finite(item, quantity, value))
+        };
+        match self {
+            Self::Box { min, max } => {
+                coordinates("min", min)?;
+                coordinates("max", max)?;
+                (0..dimension.count()).try_for_each(|i| positive(item, SIZES[i], max[i] - min[i]))
+            }
+            Self::Disc { centre, radius } => {
+                coordinates("centre", centre)?;
+                positive(item, "radius", *radius)
+            }
+            Self::Cylinder {
+                base,
+                radius,
+                height,
+                ..
+            } => {
+                coordinates("base", base)?;
+                positive(item, "radius", *radius)?;
+                positive(item, "height", *height)
+            }
+        }
+    }
+
+    /// The same shape with the components that plane strain ignores set to zero.
+    pub(crate) fn flattened(&self, dimension: Dimension) -> Self {
+        let mut shape = self.clone();
+        if dimension == Dimension::PlaneStrain {
+            match &mut shape {
+                Self::Box { min, max } => (min.z, max.z) = (0.0, 0.0),
+                Self::Disc { centre, .. } => centre.z = 0.0,
+                Self::Cylinder { .. } => {}
+            }
+        }
+        shape
+    }
+}
+
+/// Signed distance of a product of intervals from the amounts by which each is exceeded.
+fn outside_distance(beyond: &[f64]) -> f64 {
+    let outside = beyond.iter().map(|d| d.max(0.0).powi(2)).sum::<f64>();
+    let inside = beyond.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    outside.sqrt() + inside.min(0.0)
+}
+
+fn finite(item: &'static str, quantity: &'static str, value: f64) -> Result<(), GeometryError> {
+    if value.is_finite() {
+        Ok(())
+    } else {
+        Err(GeometryError::NotFinite {
+            item,
+            quantity,
+            value,
+        })
+    }
+}
+
+/// Refuses lengths that are not finite and positive.
+pub(crate) fn positive(
+    item: &'static str,
+    quantity: &'static str,
+    value: f64,
+) -> Result<(), GeometryError> {
+    finite(item, quantity, value)?;
+    if value > 0.0 {
+        Ok(())
+    } else {
+        Err(GeometryError::NotPositive {
+            item,
+            quantity,
+            value,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cylinder() -> Shape {
+        Shape::Cylinder {
+            base: Vec3::new(1.0, 0.0, 0.0),
+            axis: Axis::X,
+            radius: 2.0,
+            height: 10.0,
+        }
+    }
+
+    #[test]
+    fn signed_distance_is_negative_inside_and_euclidean_outside() {
+        let cube = Shape::Box {
+            min: Vec3::zeros(),
+            max: Vec3::new(2.0, 4.0, 6.0),
+        };
+        assert_eq!(cube.signed_distance(&Vec3::new(1.0, 2.0, 2.5)), -1.0);
+        assert_eq!(cube.signed_distance(&Vec3::new(5.0, 8.0, 3.0)), 5.0);
+        // Inside in the plane, deepest along y: a rectangle ignores z.
+        let rectangle = cube.flattened(Dimension::PlaneStrain);
+        assert_eq!(rectangle.signed_distance(&Vec3::new(1.0, 0.5, 9.0)), -0.5);
+
+        let bar = cylinder();
+        assert_eq!(bar.signed_distance(&Vec3::new(6.0, 0.0, 0.0)), -2.0);
+        assert_eq!(bar.signed_distance(&Vec3::new(1.5, 0.0, 1.0)), -0.5);
+        // Beyond the end by 3 and outside the radius (5 from the axis) by 3.
+        let corner = bar.signed_distance(&Vec3::new(14.0, 3.0, 4.0));
+        assert!((corner - 18.0_f64.sqrt()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn bounds_touch_the_surface() {
+        let (low, high) = cylinder().bounds();
+        assert_eq!(low, Vec3::new(1.0, -2.0, -2.0));
+        assert_eq!(high, Vec3::new(11.0, 2.0, 2.0));
+    }
+
+    #[test]
+    fn bad_shapes_are_refused_with_their_value() {
+        let flat = Shape::Box {
+            min: Vec3::zeros(),
+            max: Vec3::new(1.0, 0.0, 0.0),
+        };
+        assert_eq!(
+            flat.validate(Dimension::PlaneStrain)
+                .unwrap_err()
+                .to_string(),
+            "size along y of the box is 0 m; it must be positive"
+        );
+        let disc = Shape::Disc {
+            centre: Vec3::zeros(),
+            radius: f64::NAN,
+        };
+        assert!(matches!(
+            disc.validate(Dimension::PlaneStrain),
+            Err(GeometryError::NotFinite {
+                quantity: "radius",
+                ..
+            })
+        ));
+        assert!(matches!(
+            disc.validate(Dimension::Solid),
+            Err(GeometryError::WrongDimension { .. })
+        ));
+        assert!(cylinder().validate(Dimension::PlaneStrain).is_err());
+        assert!(cylinder().validate(Dimension::Solid).is_ok());
+    }
+}

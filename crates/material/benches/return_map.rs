@@ -1,0 +1,79 @@
+//! Cost of one constitutive update, elastic and plastic, in 3D and in plane strain.
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use jstsph_material::models::HenckyVonMises;
+use jstsph_material::{Kinematics, Material, MaterialSpec, PlasticHistory, library};
+use jstsph_tensor::Mat3;
+use std::hint::black_box;
+
+const POINTS: usize = 1000;
+
+/// Points that have flowed to ε_p of about 0.3 and are then strained further by `size`.
+fn points(model: &HenckyVonMises, plane: bool, size: f64) -> Vec<(Kinematics, PlasticHistory)> {
+    (0..POINTS)
+        .map(|i| {
+            let phase = i as f64;
+            let out_of_plane = if plane { 0.0 } else { 0.2 };
+            let f = |extra: f64| {
+                Mat3::new(
+                    1.1,
+                    0.3 * phase.sin() + extra,
+                    out_of_plane * (1.3 * phase).sin(),
+                    0.1 * phase.cos(),
+                    0.9,
+                    out_of_plane * phase.cos(),
+                    out_of_plane * (0.7 * phase).sin(),
+                    -out_of_plane * (1.9 * phase).cos(),
+                    1.0,
+                )
+            };
+            let kinematics = |f: Mat3| Kinematics {
+                deformation_gradient: f,
+                jacobian: f.determinant(),
+                dt: 1e-7,
+            };
+            let flowed = model
+                .respond(&kinematics(f(0.0)), &model.initial_history())
+                .expect("the points are sound");
+            (kinematics(f(size)), flowed.history)
+        })
+        .collect()
+}
+
+fn return_map(criterion: &mut Criterion) {
+    for entry in library() {
+        let MaterialSpec::HenckyVonMises(model) = &entry.spec else {
+            continue;
+        };
+        let mut group = criterion.benchmark_group(entry.name);
+        group.throughput(Throughput::Elements(POINTS as u64));
+        for (dimension, plane) in [("plane", true), ("3d", false)] {
+            // Strained back a little the points unload, strained on they flow, as in a step of a run.
+            for (kind, backward, forward) in [("elastic", true, 1e-3), ("plastic", false, 1e-4)] {
+                let points: Vec<_> = points(model, plane, forward)
+                    .into_iter()
+                    .zip(points(model, plane, -forward))
+                    .filter_map(|(one, other)| {
+                        [one, other].into_iter().find(|(now, old)| {
+                            let response = model.respond(now, old).expect("sound");
+                            (response.plastic_increment > 0.0) != backward
+                        })
+                    })
+                    .cycle()
+                    .take(POINTS)
+                    .collect();
+                group.bench_function(BenchmarkId::new(dimension, kind), |bencher| {
+                    bencher.iter(|| {
+                        for (now, old) in &points {
+                            let _ = black_box(model.respond(black_box(now), black_box(old)));
+                        }
+                    });
+                });
+            }
+        }
+        group.finish();
+    }
+}
+
+criterion_group!(benches, return_map);
+criterion_main!(benches);

@@ -1,0 +1,232 @@
+//! The frames of a run and the collection that gives ParaView their times.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::vtu::escape_xml;
+use crate::{Frame, FrameOptions, OutputError, atomic_write, write_vtu};
+
+/// Name of the collection inside the frames folder.
+const COLLECTION: &str = "frames.pvd";
+
+/// A `.pvd` collection: which file shows which time.
+///
+/// The file is rewritten atomically by [`Self::add`], so that it can be opened in ParaView while
+/// the run goes on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Collection {
+    path: PathBuf,
+    entries: Vec<(f64, String)>,
+}
+
+impl Collection {
+    /// An empty collection, to be written at `path` with the first frame.
+    pub fn new(path: &Path) -> Self {
+        Self {
+            path: path.to_path_buf(),
+            entries: Vec::new(),
+        }
+    }
+
+    /// Reads the collection at `path` and forgets frames later than `time` (s); empty if there is no file.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`], [`OutputError::Collection`] for a file of another program.
+    pub fn resume(path: &Path, time: f64) -> Result<Self, OutputError> {
+        let mut collection = Self::new(path);
+        let text = match std::fs::read_to_string(path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(collection),
+            Err(error) => return Err(OutputError::io("read", path)(error)),
+        };
+        for (index, line) in text.lines().enumerate() {
+            if line.trim_start().starts_with("<DataSet") {
+                let entry = parse_entry(line).ok_or_else(|| OutputError::Collection {
+                    path: path.to_path_buf(),
+                    line: index + 1,
+                })?;
+                collection.entries.push(entry);
+            }
+        }
+        collection.entries.retain(|(t, _)| *t <= time);
+        Ok(collection)
+    }
+
+    /// Times (s) and files, relative to the collection, in the order they were added.
+    pub fn entries(&self) -> &[(f64, String)] {
+        &self.entries
+    }
+
+    /// Adds a frame and rewrites the file; an entry of the same file is replaced.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`].
+    pub fn add(&mut self, time: f64, file: &str) -> Result<(), OutputError> {
+        self.entries.retain(|(_, other)| other != file);
+        self.entries.push((time, file.to_owned()));
+        atomic_write(&self.path, |writer| {
+            writeln!(writer, "<?xml version=\"1.0\"?>")?;
+            writeln!(
+                writer,
+                "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">"
+            )?;
+            writeln!(writer, "  <Collection>")?;
+            for (time, file) in &self.entries {
+                writeln!(
+                    writer,
+                    "    <DataSet timestep=\"{time:?}\" group=\"\" part=\"0\" file=\"{}\"/>",
+                    escape_xml(file)
+                )?;
+            }
+            writeln!(writer, "  </Collection>")?;
+            writeln!(writer, "</VTKFile>")
+        })
+    }
+}
+
+fn parse_entry(line: &str) -> Option<(f64, String)> {
+    let attribute = |name: &str| {
+        let (_, rest) = line.split_once(&format!(" {name}=\""))?;
+        rest.split_once('"').map(|(value, _)| value)
+    };
+    let time = attribute("timestep")?.parse().ok()?;
+    let file = attribute("file")?
+        .replace("&lt;", "<")
+        .replace("&gt;", ">")
+        .replace("&quot;", "\"")
+        .replace("&amp;", "&");
+    Some((time, file))
+}
+
+/// Writes `frame_000000.vtu`, `frame_000001.vtu`, ... and their collection `frames.pvd`.
+#[derive(Debug)]
+pub struct FrameSeries {
+    folder: PathBuf,
+    options: FrameOptions,
+    collection: Collection,
+}
+
+impl FrameSeries {
+    /// A new series in an existing folder.
+    pub fn create(folder: &Path, options: FrameOptions) -> Self {
+        Self {
+            folder: folder.to_path_buf(),
+            options,
+            collection: Collection::new(&folder.join(COLLECTION)),
+        }
+    }
+
+    /// Continues a series after the frame at or before `time` (s); later frames are overwritten.
+    ///
+    /// # Errors
+    /// Those of [`Collection::resume`].
+    pub fn resume(folder: &Path, options: FrameOptions, time: f64) -> Result<Self, OutputError> {
+        Ok(Self {
+            folder: folder.to_path_buf(),
+            options,
+            collection: Collection::resume(&folder.join(COLLECTION), time)?,
+        })
+    }
+
+    /// Time (s) of the last frame, if there is one.
+    pub fn last_time(&self) -> Option<f64> {
+        self.collection.entries.last().map(|(time, _)| *time)
+    }
+
+    /// Writes the next frame, then the collection; returns the frame's path.
+    ///
+    /// # Errors
+    /// Those of [`write_vtu`].
+    pub fn write(&mut self, frame: &Frame) -> Result<PathBuf, OutputError> {
+        let name = format!("frame_{:06}.vtu", self.collection.entries.len());
+        let path = self.folder.join(&name);
+        write_vtu(&path, frame, self.options)?;
+        self.collection.add(frame.time, &name)?;
+        Ok(path)
+    }
+}
+
+/// Whether a file of the frames folder is one this module writes.
+pub(crate) fn is_frame_file(name: &str) -> bool {
+    let number = name
+        .strip_prefix("frame_")
+        .and_then(|rest| rest.strip_suffix(".vtu"));
+    name == COLLECTION
+        || number.is_some_and(|n| n.len() >= 6 && n.bytes().all(|b| b.is_ascii_digit()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use jstsph_tensor::Vec3;
+
+    #[test]
+    fn a_collection_is_resumed_without_the_frames_after_the_restart() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.pvd");
+        let mut collection = Collection::new(&path);
+        for (i, time) in [0.0, 0.1 + 0.2, 1e-300].into_iter().enumerate() {
+            collection.add(time, &format!("a&b_{i}.vtu")).unwrap();
+        }
+        assert_eq!(Collection::resume(&path, 1.0).unwrap(), collection);
+        let resumed = Collection::resume(&path, 0.3).unwrap();
+        assert_eq!(
+            resumed.entries(),
+            [
+                (0.0, "a&b_0.vtu".to_owned()),
+                (1e-300, "a&b_2.vtu".to_owned())
+            ]
+        );
+    }
+
+    #[test]
+    fn a_collection_is_well_formed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.pvd");
+        Collection::new(&path).add(0.5, "frame_000000.vtu").unwrap();
+        let expected = "<?xml version=\"1.0\"?>\n\
+            <VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n  \
+            <Collection>\n    \
+            <DataSet timestep=\"0.5\" group=\"\" part=\"0\" file=\"frame_000000.vtu\"/>\n  \
+            </Collection>\n\
+            </VTKFile>\n";
+        assert_eq!(std::fs::read_to_string(path).unwrap(), expected);
+    }
+
+    #[test]
+    fn a_foreign_collection_is_refused_with_its_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.pvd");
+        std::fs::write(&path, "<VTKFile>\n<DataSet file=\"x\"/>\n").unwrap();
+        assert!(matches!(
+            Collection::resume(&path, 1.0),
+            Err(OutputError::Collection { line: 2, .. })
+        ));
+    }
+
+    #[test]
+    fn a_resumed_series_overwrites_the_frames_it_forgot() {
+        let folder = tempfile::tempdir().unwrap();
+        let positions = [Vec3::zeros()];
+        let options = FrameOptions::default();
+        let mut series = FrameSeries::create(folder.path(), options);
+        for step in 0..4_u64 {
+            let frame = Frame::new(step as f64, step, &positions);
+            series.write(&frame).unwrap();
+        }
+        let mut series = FrameSeries::resume(folder.path(), options, 1.5).unwrap();
+        assert_eq!(series.last_time(), Some(1.0));
+        let path = series.write(&Frame::new(1.75, 9, &positions)).unwrap();
+        assert!(path.ends_with("frame_000002.vtu"));
+        let collection = Collection::resume(&folder.path().join(COLLECTION), 10.0).unwrap();
+        let times: Vec<f64> = collection.entries().iter().map(|(t, _)| *t).collect();
+        assert_eq!(times, [0.0, 1.0, 1.75]);
+    }
+
+    #[test]
+    fn only_our_own_files_are_recognised() {
+        assert!(is_frame_file("frame_000012.vtu") && is_frame_file("frames.pvd"));
+        assert!(!is_frame_file("frame_old.vtu") && !is_frame_file("view.pvsm"));
+        assert!(!is_frame_file("frame_12.vtu") && !is_frame_file("other.pvd"));
+    }
+}

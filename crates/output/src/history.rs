@@ -1,0 +1,206 @@
+//! The history of a run: `history.csv`.
+
+use std::path::Path;
+
+use crate::{Energies, Extremes, OutputError, TableWriter};
+
+/// A column that every history has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct HistoryColumn {
+    /// Name in the header.
+    pub name: &'static str,
+    /// SI unit, `-` for a pure number.
+    pub unit: &'static str,
+    /// What it is.
+    pub meaning: &'static str,
+}
+
+/// The columns of `history.csv` before the probes, in order.
+pub const HISTORY_COLUMNS: [HistoryColumn; 14] = [
+    column("time", "s", "simulated time"),
+    column("step", "-", "steps done"),
+    column("dt", "s", "size of the last time step"),
+    column("kinetic_energy", "J", "energy of motion"),
+    column("elastic_energy", "J", "energy stored in elastic strain"),
+    column(
+        "plastic_energy",
+        "J",
+        "work turned into heat by plastic flow",
+    ),
+    column(
+        "numerical_energy",
+        "J",
+        "energy removed by the numerical dissipation",
+    ),
+    column(
+        "hourglass_energy",
+        "J",
+        "energy of the control of spurious modes",
+    ),
+    column(
+        "external_energy",
+        "J",
+        "work done on the body by loads and prescribed motion",
+    ),
+    column("contact_energy", "J", "work done on the body by obstacles"),
+    column("energy_balance", "J", "defect of the energy balance"),
+    column(
+        "equivalent_plastic_strain",
+        "-",
+        "largest equivalent plastic strain",
+    ),
+    column("jacobian_min", "-", "smallest volume ratio"),
+    column("jacobian_max", "-", "largest volume ratio"),
+];
+
+const fn column(name: &'static str, unit: &'static str, meaning: &'static str) -> HistoryColumn {
+    HistoryColumn {
+        name,
+        unit,
+        meaning,
+    }
+}
+
+/// One row of the history.
+#[derive(Debug, Clone, Copy)]
+pub struct HistoryRow<'a> {
+    /// Simulated time, s.
+    pub time: f64,
+    /// Steps done.
+    pub step: u64,
+    /// Size of the last time step, s; zero in the first row.
+    pub dt: f64,
+    /// Energies, J.
+    pub energies: Energies,
+    /// Extremes over the particles.
+    pub extremes: Extremes,
+    /// Values of the probes, in SI units, in the order given when the history was created.
+    pub probes: &'a [f64],
+}
+
+/// Writes `history.csv`: [`HISTORY_COLUMNS`], then one column per probe, all in SI units.
+#[derive(Debug)]
+pub struct HistoryWriter {
+    table: TableWriter,
+}
+
+impl HistoryWriter {
+    /// Starts a history with the given probes, replacing an existing file.
+    ///
+    /// # Errors
+    /// Those of [`TableWriter::create`].
+    pub fn create(path: &Path, probes: &[String]) -> Result<Self, OutputError> {
+        let table = TableWriter::create(path, columns(probes))?;
+        Ok(Self { table })
+    }
+
+    /// Continues a history after `time` (s), removing later rows.
+    ///
+    /// # Errors
+    /// Those of [`TableWriter::resume`].
+    pub fn resume(path: &Path, probes: &[String], time: f64) -> Result<Self, OutputError> {
+        let table = TableWriter::resume(path, columns(probes), time)?;
+        Ok(Self { table })
+    }
+
+    /// Appends a row.
+    ///
+    /// # Errors
+    /// Those of [`TableWriter::append`].
+    pub fn append(&mut self, row: &HistoryRow) -> Result<(), OutputError> {
+        let HistoryRow {
+            energies: e,
+            extremes: x,
+            ..
+        } = row;
+        let mut values = vec![
+            row.time,
+            row.step as f64,
+            row.dt,
+            e.kinetic,
+            e.elastic,
+            e.plastic,
+            e.numerical,
+            e.hourglass,
+            e.external,
+            e.contact,
+            e.balance,
+            x.equivalent_plastic_strain,
+            x.jacobian_min,
+            x.jacobian_max,
+        ];
+        values.extend_from_slice(row.probes);
+        self.table.append(&values)
+    }
+}
+
+fn columns(probes: &[String]) -> Vec<String> {
+    let fixed = HISTORY_COLUMNS.iter().map(|column| column.name.to_owned());
+    fixed.chain(probes.iter().cloned()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::read_table;
+
+    #[test]
+    fn each_value_lands_in_its_column() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("history.csv");
+        let probes = ["base_radius".to_owned()];
+        let row = HistoryRow {
+            time: 1.0,
+            step: 2,
+            dt: 3.0,
+            energies: Energies {
+                kinetic: 4.0,
+                elastic: 5.0,
+                plastic: 6.0,
+                numerical: 7.0,
+                hourglass: 8.0,
+                external: 9.0,
+                contact: 10.0,
+                balance: 11.0,
+            },
+            extremes: Extremes {
+                equivalent_plastic_strain: 12.0,
+                jacobian_min: 13.0,
+                jacobian_max: 14.0,
+            },
+            probes: &[15.0],
+        };
+        HistoryWriter::create(&path, &probes)
+            .unwrap()
+            .append(&row)
+            .unwrap();
+        HistoryWriter::resume(&path, &probes, 1.0)
+            .unwrap()
+            .append(&HistoryRow { time: 1.5, ..row })
+            .unwrap();
+        let table = read_table(&path).unwrap();
+        for (name, value) in [
+            ("time", 1.0),
+            ("step", 2.0),
+            ("kinetic_energy", 4.0),
+            ("plastic_energy", 6.0),
+            ("contact_energy", 10.0),
+            ("energy_balance", 11.0),
+            ("jacobian_max", 14.0),
+            ("base_radius", 15.0),
+        ] {
+            assert_eq!(table.column(name).unwrap()[0], value, "{name}");
+        }
+        assert_eq!(table.column("time"), Some(vec![1.0, 1.5]));
+    }
+
+    #[test]
+    fn a_probe_may_not_take_the_name_of_a_column() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("history.csv");
+        assert!(matches!(
+            HistoryWriter::create(&path, &["dt".to_owned()]),
+            Err(OutputError::DuplicateName { .. })
+        ));
+    }
+}

@@ -1,0 +1,425 @@
+//! Curves over a common axis.
+
+use super::axis::{
+    Axes, BELOW, HALF_HEIGHT, Ruler, Scale, TICK_SIZE, TITLE, TITLE_SIZE, draw_title,
+};
+use super::canvas::{Anchor, Canvas, Colour, PAPER, Rect, Stroke};
+use super::{Quantity, clip, text};
+use crate::{OutputError, Table};
+
+const PLOT: [f64; 2] = [520.0, 330.0];
+const MARGIN: f64 = 12.0;
+const KEY: f64 = 24.0;
+const KEY_HEIGHT: f64 = 20.0;
+/// Most points of a curve that are drawn: four per pixel of the plot.
+const MOST_POINTS: usize = 2_080;
+
+/// Colours that readers with any colour vision can tell apart (M. Okabe and K. Ito 2008), the
+/// yellow replaced by a brown that shows on white.
+const COLOURS: [Colour; 8] = [
+    [0, 114, 178],
+    [213, 94, 0],
+    [0, 158, 115],
+    [204, 121, 167],
+    [230, 159, 0],
+    [86, 180, 233],
+    [60, 60, 60],
+    [140, 86, 75],
+];
+
+/// The look of a curve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum SeriesStyle {
+    /// A full line.
+    #[default]
+    Line,
+    /// A dashed line, for references.
+    Dashed,
+    /// Markers only, for measurements.
+    Markers,
+    /// A line with a marker at each point, for few points.
+    LineWithMarkers,
+}
+
+/// A curve.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Series {
+    /// Name in the legend.
+    pub label: String,
+    /// Points in SI units.
+    pub points: Vec<(f64, f64)>,
+    /// Look.
+    pub style: SeriesStyle,
+}
+
+/// What to draw over which axes.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LinePlot {
+    /// Title; empty for none.
+    pub title: String,
+    /// What the horizontal axis shows.
+    pub x: Quantity,
+    /// What the vertical axis shows.
+    pub y: Quantity,
+    /// Horizontal scale.
+    pub x_scale: Scale,
+    /// Vertical scale.
+    pub y_scale: Scale,
+    /// The curves; colours go round after eight.
+    pub series: Vec<Series>,
+}
+
+impl LinePlot {
+    /// Columns of a table over one of its columns, as full lines named after the columns with
+    /// spaces for underscores.
+    ///
+    /// # Errors
+    /// [`OutputError::NoColumn`].
+    pub fn from_table(
+        table: &Table,
+        x: (&str, Quantity),
+        y: (&[&str], Quantity),
+    ) -> Result<Self, OutputError> {
+        let column = |name: &str| {
+            table.column(name).ok_or_else(|| OutputError::NoColumn {
+                column: name.to_owned(),
+                columns: table.columns.clone(),
+            })
+        };
+        let abscissa = column(x.0)?;
+        let series = y.0.iter().map(|name| {
+            let values = column(name)?;
+            Ok(Series {
+                label: name.replace('_', " "),
+                points: abscissa.iter().copied().zip(values).collect(),
+                style: SeriesStyle::Line,
+            })
+        });
+        Ok(Self {
+            x: x.1,
+            y: y.1,
+            series: series.collect::<Result<_, OutputError>>()?,
+            ..Self::default()
+        })
+    }
+
+    fn check(&self) -> Result<(), OutputError> {
+        if self.series.iter().all(|series| series.points.is_empty()) {
+            return Err(OutputError::NothingToDraw {
+                title: self.title.clone(),
+                reason: "no series has a point",
+            });
+        }
+        for series in &self.series {
+            for (index, &(x, y)) in series.points.iter().enumerate() {
+                for (value, scale) in [(x, self.x_scale), (y, self.y_scale)] {
+                    if !value.is_finite() {
+                        return Err(OutputError::NotFinite {
+                            field: series.label.clone(),
+                            index,
+                            value,
+                        });
+                    }
+                    if scale == Scale::Logarithmic && value <= 0.0 {
+                        return Err(OutputError::NotPositive {
+                            series: series.label.clone(),
+                            index,
+                            value,
+                        });
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn has_markers(&self) -> bool {
+        let marked = [SeriesStyle::Markers, SeriesStyle::LineWithMarkers];
+        self.series.iter().any(|s| marked.contains(&s.style))
+    }
+}
+
+pub(crate) fn draw(plot: &LinePlot) -> Result<Canvas, OutputError> {
+    plot.check()?;
+    let points = || plot.series.iter().flat_map(|series| &series.points);
+    let x_room = if plot.has_markers() { 0.04 } else { 0.0 };
+    let (x_ruler, x_factor, x_label) =
+        ruler(points().map(|point| point.0), plot.x_scale, &plot.x, x_room);
+    let (y_ruler, y_factor, y_label) =
+        ruler(points().map(|point| point.1), plot.y_scale, &plot.y, 0.05);
+    let axes = Axes {
+        rulers: [x_ruler, y_ruler],
+        labels: [&x_label, &y_label],
+        grid: true,
+    };
+
+    let left = MARGIN + axes.left_space(PLOT[1]);
+    let top = MARGIN + if plot.title.is_empty() { 0.0 } else { TITLE };
+    let frame = Rect {
+        left,
+        top,
+        right: left + PLOT[0],
+        bottom: top + PLOT[1],
+    };
+    let legend = legend_width(plot);
+    let title = text::width(&plot.title, TITLE_SIZE) + 2.0 * MARGIN;
+    let mut canvas = Canvas::new(
+        (frame.right + legend + MARGIN).max(title),
+        frame.bottom + BELOW + MARGIN,
+    );
+    axes.draw_below(&mut canvas, &frame);
+    for (index, series) in plot.series.iter().enumerate() {
+        let places: Vec<[f64; 2]> = series
+            .points
+            .iter()
+            .map(|&(x, y)| axes.place(&frame, [x * x_factor, y * y_factor]))
+            .collect();
+        draw_series(&mut canvas, &frame, series.style, colour(index), &places);
+    }
+    axes.draw_above(&mut canvas, &frame);
+    draw_legend(&mut canvas, plot, &frame);
+    draw_title(&mut canvas, &frame, &plot.title);
+    Ok(canvas)
+}
+
+/// The axis that shows all values, the factor from values to it, and its label.
+fn ruler(
+    values: impl Iterator<Item = f64>,
+    scale: Scale,
+    quantity: &Quantity,
+    room: f64,
+) -> (Ruler, f64, String) {
+    let (mut lower, mut upper) = values.fold((f64::MAX, f64::MIN), |(lower, upper), value| {
+        (lower.min(value), upper.max(value))
+    });
+    if scale == Scale::Logarithmic {
+        // Decades tell the unit well enough; a constant gets one decade on each side.
+        let margin = if lower == upper {
+            10.0
+        } else {
+            (upper / lower).powf(room)
+        };
+        let ruler = Ruler {
+            lower: lower / margin,
+            upper: upper * margin,
+            scale,
+        };
+        return (ruler, 1.0, quantity.plain());
+    }
+    let magnitude = lower.abs().max(upper.abs());
+    let (factor, label) = quantity.shown(magnitude);
+    if upper - lower <= 1e-12 * magnitude {
+        let half = if magnitude == 0.0 {
+            1.0
+        } else {
+            0.1 * magnitude
+        };
+        (lower, upper) = (lower - half, upper + half);
+    }
+    let margin = room * (upper - lower);
+    // Zero is shown when it is near, and is then a sharp end.
+    let near_zero = lower >= 0.0 && lower < 0.3 * upper && room > 0.0;
+    lower = if near_zero { 0.0 } else { lower - margin };
+    let ruler = Ruler::linear(lower * factor, (upper + margin) * factor);
+    (ruler, factor, label)
+}
+
+fn draw_series(
+    canvas: &mut Canvas,
+    frame: &Rect,
+    style: SeriesStyle,
+    colour: Colour,
+    places: &[[f64; 2]],
+) {
+    if style != SeriesStyle::Markers {
+        let stroke = Stroke {
+            dashed: style == SeriesStyle::Dashed,
+            ..Stroke::solid(colour, 1.6)
+        };
+        for part in clip::polyline(&thin(places), frame) {
+            canvas.polyline(part, stroke);
+        }
+    }
+    if style == SeriesStyle::Markers || style == SeriesStyle::LineWithMarkers || places.len() == 1 {
+        for &centre in places {
+            canvas.circle(centre, 3.4, colour, Some(Stroke::solid(PAPER, 0.8)));
+        }
+    }
+}
+
+/// A long curve without the points that no eye could see: of each of many equal runs the lowest
+/// and the highest point are kept, and the two ends.
+fn thin(places: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    if places.len() <= MOST_POINTS {
+        return places.to_vec();
+    }
+    let run = places.len().div_ceil(MOST_POINTS / 2);
+    let mut thinned = vec![places[0]];
+    for (chunk, start) in places.chunks(run).zip((0..).step_by(run)) {
+        let by_height = |&a: &usize, &b: &usize| chunk[a][1].total_cmp(&chunk[b][1]);
+        let lowest = (0..chunk.len()).min_by(by_height).unwrap_or(0);
+        let highest = (0..chunk.len()).max_by(by_height).unwrap_or(0);
+        let [first, second] = [lowest.min(highest), lowest.max(highest)];
+        thinned.push(places[start + first]);
+        thinned.push(places[start + second]);
+    }
+    thinned.push(places[places.len() - 1]);
+    thinned
+}
+
+fn colour(index: usize) -> Colour {
+    COLOURS[index % COLOURS.len()]
+}
+
+/// One curve with an empty or only label needs no legend.
+fn has_legend(plot: &LinePlot) -> bool {
+    plot.series.len() > 1
+}
+
+fn legend_width(plot: &LinePlot) -> f64 {
+    if !has_legend(plot) {
+        return MARGIN;
+    }
+    let widest = plot
+        .series
+        .iter()
+        .map(|series| text::width(&series.label, TICK_SIZE))
+        .fold(0.0, f64::max);
+    14.0 + KEY + 7.0 + widest
+}
+
+fn draw_legend(canvas: &mut Canvas, plot: &LinePlot, frame: &Rect) {
+    if !has_legend(plot) {
+        return;
+    }
+    let left = frame.right + 14.0;
+    for (index, series) in plot.series.iter().enumerate() {
+        let y = frame.top + KEY_HEIGHT * (index as f64 + 0.5);
+        let key = Rect {
+            left,
+            right: left + KEY,
+            top: y - 1.0,
+            bottom: y + 1.0,
+        };
+        let ends = [[key.left, y], [key.right, y]];
+        let colour = colour(index);
+        match series.style {
+            SeriesStyle::Line | SeriesStyle::Dashed => {
+                draw_series(canvas, &key, series.style, colour, &ends);
+            }
+            SeriesStyle::Markers | SeriesStyle::LineWithMarkers => {
+                if series.style == SeriesStyle::LineWithMarkers {
+                    draw_series(canvas, &key, SeriesStyle::Line, colour, &ends);
+                }
+                let middle = [[0.5 * (key.left + key.right), y]];
+                draw_series(canvas, &key, SeriesStyle::Markers, colour, &middle);
+            }
+        }
+        let at = [key.right + 7.0, y + HALF_HEIGHT * TICK_SIZE];
+        canvas.text(at, TICK_SIZE, Anchor::Start, &series.label);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plot::canvas::Shape;
+
+    fn series(points: &[(f64, f64)]) -> Series {
+        Series {
+            label: "s".to_owned(),
+            points: points.to_vec(),
+            style: SeriesStyle::Line,
+        }
+    }
+
+    fn texts(canvas: &Canvas) -> Vec<&str> {
+        canvas
+            .shapes
+            .iter()
+            .filter_map(|shape| match shape {
+                Shape::Text { content, .. } => Some(content.as_str()),
+                _ => None,
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_curve_is_drawn_from_corner_to_corner_in_shown_units() {
+        let plot = LinePlot {
+            x: Quantity::new("time", "s"),
+            y: Quantity::new("energy", "J"),
+            series: vec![series(&[(0.0, 0.0), (8e-5, 2e3)])],
+            ..LinePlot::default()
+        };
+        let canvas = draw(&plot).unwrap();
+        let texts = texts(&canvas);
+        assert!(
+            texts.contains(&"time (µs)") && texts.contains(&"energy (kJ)"),
+            "{texts:?}"
+        );
+        assert!(texts.contains(&"80"), "{texts:?}");
+        let curve = canvas.shapes.iter().find_map(|shape| match shape {
+            Shape::Polyline { points, stroke } if stroke.colour == COLOURS[0] => Some(points),
+            _ => None,
+        });
+        let curve = curve.unwrap();
+        assert!((curve[1][0] - curve[0][0] - PLOT[0]).abs() < 1e-9);
+        // Five per cent of room above, and the axis starts at zero.
+        assert!((curve[0][1] - curve[1][1] - PLOT[1] / 1.05).abs() < 1e-9);
+    }
+
+    #[test]
+    fn thinning_keeps_ends_and_peaks() {
+        let mut places: Vec<[f64; 2]> = (0..100_000).map(|i| [f64::from(i), 0.0]).collect();
+        places[31_337][1] = 7.0;
+        places[31_338][1] = -5.0;
+        let thinned = thin(&places);
+        assert!(thinned.len() < MOST_POINTS + 10);
+        for kept in [0, 31_337, 31_338, 99_999] {
+            assert!(thinned.contains(&places[kept]), "{kept}");
+        }
+        assert!(thinned.windows(2).all(|pair| pair[0][0] <= pair[1][0]));
+    }
+
+    #[test]
+    fn what_cannot_be_shown_is_an_error() {
+        let plot = |points: &[(f64, f64)], y_scale| LinePlot {
+            y_scale,
+            series: vec![series(points)],
+            ..LinePlot::default()
+        };
+        assert!(matches!(
+            draw(&plot(&[], Scale::Linear)),
+            Err(OutputError::NothingToDraw { .. })
+        ));
+        assert!(matches!(
+            draw(&plot(&[(0.0, 1.0), (1.0, 0.0)], Scale::Logarithmic)),
+            Err(OutputError::NotPositive { index: 1, .. })
+        ));
+        assert!(matches!(
+            draw(&plot(&[(f64::NAN, 1.0)], Scale::Linear)),
+            Err(OutputError::NotFinite { index: 0, .. })
+        ));
+        assert!(draw(&plot(&[(0.0, 3.0), (1.0, 3.0)], Scale::Linear)).is_ok());
+        assert!(draw(&plot(&[(0.0, 3.0), (1.0, 3.0)], Scale::Logarithmic)).is_ok());
+    }
+
+    #[test]
+    fn columns_of_a_table_become_curves() {
+        let table = Table {
+            columns: ["time", "kinetic_energy"].map(str::to_owned).to_vec(),
+            rows: vec![vec![0.0, 5.0], vec![1.0, 4.0]],
+        };
+        let time = || ("time", Quantity::new("time", "s"));
+        let energy = || Quantity::new("energy", "J");
+        let plot = LinePlot::from_table(&table, time(), (&["kinetic_energy"], energy())).unwrap();
+        assert_eq!(plot.series[0].label, "kinetic energy");
+        assert_eq!(plot.series[0].points, [(0.0, 5.0), (1.0, 4.0)]);
+        let error = LinePlot::from_table(&table, time(), (&["heat"], energy())).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "there is no column `heat`; the columns are time, kinetic_energy"
+        );
+    }
+}

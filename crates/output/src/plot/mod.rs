@@ -1,0 +1,91 @@
+//! Pictures for papers and reports, as PNG and SVG, without any font or program on the machine.
+//!
+//! [`Figure::particles`] draws a body coloured by a field, [`Figure::lines`] draws curves. Both
+//! lay out a list of shapes once; the two file formats render the same list, so that they agree.
+//! Text in PNG files is drawn with DejaVu Sans, which is compiled in.
+
+mod axis;
+mod canvas;
+mod clip;
+mod colorbar;
+mod colormap;
+mod lines;
+mod particles;
+mod raster;
+mod svg;
+mod text;
+mod unit;
+mod view;
+
+use std::path::Path;
+
+use crate::{OutputError, atomic_write};
+use canvas::Canvas;
+
+pub use axis::Scale;
+pub use colormap::ColourMap;
+pub use lines::{LinePlot, Series, SeriesStyle};
+pub use particles::ParticlePlot;
+pub use unit::Quantity;
+pub use view::{Axis, Section, View};
+
+/// Text that every picture carries near its beginning, to tell ours from others.
+pub(crate) const MARK: &str = "made by jstsph";
+
+/// A finished picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Figure {
+    canvas: Canvas,
+}
+
+impl Figure {
+    /// A body coloured by a field.
+    ///
+    /// # Errors
+    /// [`OutputError::NothingToDraw`] without particles to show, [`OutputError::FieldLength`],
+    /// [`OutputError::NotFinite`], [`OutputError::CellPoint`].
+    pub fn particles(plot: &ParticlePlot) -> Result<Self, OutputError> {
+        Ok(Self {
+            canvas: particles::draw(plot)?,
+        })
+    }
+
+    /// Curves over a common axis.
+    ///
+    /// # Errors
+    /// [`OutputError::NothingToDraw`] without points, [`OutputError::NotFinite`],
+    /// [`OutputError::NotPositive`] for values that a logarithmic axis cannot show.
+    pub fn lines(plot: &LinePlot) -> Result<Self, OutputError> {
+        Ok(Self {
+            canvas: lines::draw(plot)?,
+        })
+    }
+
+    /// Width and height in CSS pixels (1/96 inch).
+    pub fn size(&self) -> (f64, f64) {
+        (self.canvas.width, self.canvas.height)
+    }
+
+    /// Writes a PNG file with two pixels per CSS pixel (192 per inch), atomically.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`].
+    pub fn save_png(&self, path: &Path) -> Result<(), OutputError> {
+        let bytes = raster::png(&self.canvas).map_err(OutputError::io("draw", path))?;
+        atomic_write(path, |writer| writer.write_all(&bytes))
+    }
+
+    /// Writes an SVG file, atomically.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`].
+    pub fn save_svg(&self, path: &Path) -> Result<(), OutputError> {
+        let text = self.svg();
+        atomic_write(path, |writer| writer.write_all(text.as_bytes()))
+    }
+
+    /// The picture as SVG text, for embedding in a report.
+    pub fn svg(&self) -> String {
+        svg::svg(&self.canvas)
+    }
+}

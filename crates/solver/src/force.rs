@@ -1,0 +1,164 @@
+//! Internal force (3.10), hourglass stiffness, and external forces.
+
+use jstsph_tensor::Vec3;
+
+use crate::model::{Condition, ConditionKind, Model, Quadrature, Signal};
+use crate::parallel;
+use crate::reference::Reference;
+use crate::state::{State, Workspace};
+
+/// T_c = (1/V_c) Σ_q V_q P_q B_qc per unit reference volume, N/m³; approximates −DIV P.
+///
+/// Σ_c V_c T_c = 0 to round-off for any stress, because Σ_c B_qc = 0.
+pub(crate) fn internal(reference: &Reference, work: &mut Workspace) {
+    for body in &reference.bodies {
+        let stress = &work.scaled_stress[body.points.clone()];
+        let volume = &reference.volume[body.particles.clone()];
+        parallel::fill(&mut work.internal_force[body.particles.clone()], |c| {
+            body.gradient.divergence_at(c, stress) / volume[c]
+        });
+    }
+}
+
+/// Averages G and F of the points to the particles, for the pair stabilisations.
+pub(crate) fn average_to_particles(
+    reference: &Reference,
+    state: &State,
+    quadrature: Quadrature,
+    work: &mut Workspace,
+) {
+    for body in reference.bodies.iter().filter(|body| body.pairs.is_some()) {
+        let (range, points) = (body.particles.clone(), body.points.clone());
+        let (velocity, deformation) =
+            (&work.velocity_gradient[points.clone()], &state.deformation_gradient[points]);
+        let averaged_velocity = &mut work.particle_velocity_gradient[range.clone()];
+        let averaged_deformation = &mut work.particle_deformation_gradient[range];
+        match quadrature {
+            Quadrature::Particles => {
+                averaged_velocity.copy_from_slice(velocity);
+                averaged_deformation.copy_from_slice(deformation);
+            }
+            Quadrature::Bonds => {
+                parallel::for_each_pair(averaged_velocity, averaged_deformation, |a, g, f| {
+                    *g = body.shares.mean_tensor(a, |q| velocity[q]);
+                    *f = body.shares.mean_tensor(a, |q| deformation[q]);
+                });
+            }
+        }
+    }
+}
+
+/// Adds the hourglass stiffness to the internal force:
+///
+/// ```text
+///   T_a −= ζ μ Σ_b V_b w_ab [ x_b − x_a − ½ (F_a + F_b)(X_b − X_a) ]
+/// ```
+///
+/// Antisymmetric pair by pair; zero for any affine motion (Ganzenmüller 2015, in the pair form of
+/// docs/theory.md).
+pub(crate) fn hourglass(reference: &Reference, state: &State, coefficient: f64, work: &mut Workspace) {
+    for body in &reference.bodies {
+        let Some(pairs) = &body.pairs else { continue };
+        let range = body.particles.clone();
+        let deformation = &work.particle_deformation_gradient[range.clone()];
+        let (position, start) = (&state.position[range.clone()], &reference.position[range.clone()]);
+        let factor = coefficient * body.shear_modulus;
+        parallel::for_each(&mut work.internal_force[range], |a, force| {
+            let (indices, weights) = pairs.row(a);
+            let mut sum = Vec3::zeros();
+            for (&b, weight) in indices.iter().zip(weights) {
+                let b = b as usize;
+                let offset = start[b] - start[a];
+                let predicted = (deformation[a] + deformation[b]) * offset * 0.5;
+                sum += (position[b] - position[a] - predicted) * *weight;
+            }
+            *force -= sum * factor;
+        });
+    }
+}
+
+/// Energy stored by the hourglass stiffness, ¼ ζ μ Σ_ab V_a V_b w_ab |·|², J.
+pub(crate) fn hourglass_energy(
+    reference: &Reference,
+    state: &State,
+    coefficient: f64,
+    work: &Workspace,
+) -> f64 {
+    let mut total = 0.0;
+    for body in &reference.bodies {
+        let Some(pairs) = &body.pairs else { continue };
+        let range = body.particles.clone();
+        let deformation = &work.particle_deformation_gradient[range.clone()];
+        let (position, start) = (&state.position[range.clone()], &reference.position[range.clone()]);
+        let volume = &reference.volume[range];
+        total += 0.25
+            * coefficient
+            * body.shear_modulus
+            * parallel::sum(volume.len(), 0.0, |a| {
+                let (indices, weights) = pairs.row(a);
+                let mut sum = 0.0;
+                for (&b, weight) in indices.iter().zip(weights) {
+                    let b = b as usize;
+                    let offset = start[b] - start[a];
+                    let predicted = (deformation[a] + deformation[b]) * offset * 0.5;
+                    sum += weight * (position[b] - position[a] - predicted).norm_squared();
+                }
+                volume[a] * sum
+            });
+    }
+    total
+}
+
+/// Body forces and tractions: everything that pushes and is neither a constraint nor a contact.
+#[derive(Clone, Debug)]
+pub(crate) struct Loads {
+    body_forces: Vec<Option<[Signal; 3]>>,
+    tractions: Vec<Condition>,
+}
+
+impl Loads {
+    pub(crate) fn new(model: &Model) -> Self {
+        Self {
+            body_forces: model.bodies.iter().map(|body| body.body_force.clone()).collect(),
+            tractions: model
+                .conditions
+                .iter()
+                .filter(|condition| matches!(condition.kind, ConditionKind::Traction { .. }))
+                .cloned()
+                .collect(),
+        }
+    }
+
+    /// ρ b + A t / V of every particle at `time`, N/m³.
+    pub(crate) fn evaluate(&self, reference: &Reference, time: f64, external_force: &mut [Vec3]) {
+        if self.tractions.is_empty() && self.body_forces.iter().all(Option::is_none) {
+            return;
+        }
+        external_force.fill(Vec3::zeros());
+        for (body, signals) in reference.bodies.iter().zip(&self.body_forces) {
+            let Some(signals) = signals else { continue };
+            let position = &reference.position[body.particles.clone()];
+            parallel::fill(&mut external_force[body.particles.clone()], |a| {
+                vector(signals, time, &position[a]) * body.density
+            });
+        }
+        for condition in &self.tractions {
+            let ConditionKind::Traction { areas, traction } = &condition.kind else { continue };
+            let first = reference.bodies[condition.body].particles.start;
+            for (&particle, area) in condition.particles.iter().zip(areas) {
+                let a = first + particle as usize;
+                external_force[a] +=
+                    vector(traction, time, &reference.position[a]) * (area / reference.volume[a]);
+            }
+        }
+    }
+}
+
+/// Three signals as a vector.
+pub(crate) fn vector(signals: &[Signal; 3], time: f64, reference_position: &Vec3) -> Vec3 {
+    Vec3::new(
+        signals[0].at(time, reference_position),
+        signals[1].at(time, reference_position),
+        signals[2].at(time, reference_position),
+    )
+}

@@ -1,0 +1,206 @@
+//! Loops over particles and points, and reductions whose result does not depend on the number of
+//! threads.
+//!
+//! Every item is computed by one call that reads shared data and writes its own slot, so loops are
+//! deterministic by construction; sums and maxima run over a binary tree that depends on the
+//! number of items alone. Small problems (the paper's own have hundreds of particles) stay serial.
+
+use rayon::prelude::*;
+
+/// Items per task.
+const CHUNK: usize = 256;
+
+/// Below this many items a loop runs serially: a parallel call costs about as much as a hundred
+/// particles.
+const SERIAL_BELOW: usize = 2048;
+
+#[inline]
+fn serial(items: usize) -> bool {
+    items < SERIAL_BELOW || rayon::current_num_threads() == 1
+}
+
+/// `out[i] = value(i)` for every i.
+pub(crate) fn fill<T: Send>(out: &mut [T], value: impl Fn(usize) -> T + Sync) {
+    for_each(out, |i, slot| *slot = value(i));
+}
+
+/// Calls `action(i, &mut items[i])` for every i.
+pub(crate) fn for_each<T: Send>(items: &mut [T], action: impl Fn(usize, &mut T) + Sync) {
+    if serial(items.len()) {
+        items.iter_mut().enumerate().for_each(|(i, item)| action(i, item));
+        return;
+    }
+    items.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, items)| {
+        for (k, item) in items.iter_mut().enumerate() {
+            action(chunk * CHUNK + k, item);
+        }
+    });
+}
+
+/// Calls `action(i, &mut first[i], &mut second[i])` for every i; both have the same length.
+pub(crate) fn for_each_pair<A: Send, B: Send>(
+    first: &mut [A],
+    second: &mut [B],
+    action: impl Fn(usize, &mut A, &mut B) + Sync,
+) {
+    debug_assert_eq!(first.len(), second.len());
+    if serial(first.len()) {
+        for (i, (a, b)) in first.iter_mut().zip(second).enumerate() {
+            action(i, a, b);
+        }
+        return;
+    }
+    first
+        .par_chunks_mut(CHUNK)
+        .zip(second.par_chunks_mut(CHUNK))
+        .enumerate()
+        .for_each(|(chunk, (first, second))| {
+            for (k, (a, b)) in first.iter_mut().zip(second).enumerate() {
+                action(chunk * CHUNK + k, a, b);
+            }
+        });
+}
+
+/// Calls `action(i, &mut first[i], &mut second[i], &mut third[i])` for every i.
+pub(crate) fn for_each_triple<A: Send, B: Send, C: Send>(
+    first: &mut [A],
+    second: &mut [B],
+    third: &mut [C],
+    action: impl Fn(usize, &mut A, &mut B, &mut C) + Sync,
+) {
+    debug_assert!(first.len() == second.len() && second.len() == third.len());
+    if serial(first.len()) {
+        for (i, ((a, b), c)) in first.iter_mut().zip(second).zip(third).enumerate() {
+            action(i, a, b, c);
+        }
+        return;
+    }
+    first
+        .par_chunks_mut(CHUNK)
+        .zip(second.par_chunks_mut(CHUNK))
+        .zip(third.par_chunks_mut(CHUNK))
+        .enumerate()
+        .for_each(|(chunk, ((first, second), third))| {
+            for (k, ((a, b), c)) in first.iter_mut().zip(second).zip(third).enumerate() {
+                action(chunk * CHUNK + k, a, b, c);
+            }
+        });
+}
+
+/// Calls `action(i, &mut first[i], &mut second[i], &mut third[i], group)` for every i, where
+/// `group` is the i-th run of `width` entries of `grouped`.
+pub(crate) fn for_each_with_group<A: Send, B: Send, C: Send, G: Send>(
+    (first, second, third): (&mut [A], &mut [B], &mut [C]),
+    grouped: &mut [G],
+    width: usize,
+    action: impl Fn(usize, &mut A, &mut B, &mut C, &mut [G]) + Sync,
+) {
+    debug_assert_eq!(first.len() * width, grouped.len());
+    let run = |offset: usize, a: &mut [A], b: &mut [B], c: &mut [C], g: &mut [G]| {
+        for (k, (((a, b), c), g)) in
+            a.iter_mut().zip(b).zip(c).zip(g.chunks_mut(width)).enumerate()
+        {
+            action(offset + k, a, b, c, g);
+        }
+    };
+    if serial(first.len()) {
+        run(0, first, second, third, grouped);
+        return;
+    }
+    first
+        .par_chunks_mut(CHUNK)
+        .zip(second.par_chunks_mut(CHUNK))
+        .zip(third.par_chunks_mut(CHUNK))
+        .zip(grouped.par_chunks_mut(CHUNK * width))
+        .enumerate()
+        .for_each(|(chunk, (((a, b), c), g))| run(chunk * CHUNK, a, b, c, g));
+}
+
+/// Folds `leaf(range)` over 0..items with `join`, in a fixed binary tree.
+pub(crate) fn reduce<T: Send>(
+    items: usize,
+    leaf: &(impl Fn(std::ops::Range<usize>) -> T + Sync),
+    join: &(impl Fn(T, T) -> T + Sync),
+) -> T {
+    fn tree<T: Send>(
+        range: std::ops::Range<usize>,
+        parallel: bool,
+        leaf: &(impl Fn(std::ops::Range<usize>) -> T + Sync),
+        join: &(impl Fn(T, T) -> T + Sync),
+    ) -> T {
+        if range.len() <= 2 * CHUNK {
+            return leaf(range);
+        }
+        let middle = range.start + range.len() / 2;
+        let (low, high) = (range.start..middle, middle..range.end);
+        if parallel {
+            let (a, b) = rayon::join(
+                || tree(low, parallel, leaf, join),
+                || tree(high, parallel, leaf, join),
+            );
+            join(a, b)
+        } else {
+            let a = tree(low, parallel, leaf, join);
+            let b = tree(high, parallel, leaf, join);
+            join(a, b)
+        }
+    }
+    tree(0..items, !serial(items), leaf, join)
+}
+
+/// Sum of `value(i)` over 0..items, in a fixed binary tree.
+pub(crate) fn sum<T>(items: usize, zero: T, value: impl Fn(usize) -> T + Sync) -> T
+where
+    T: Copy + Send + Sync + std::ops::Add<Output = T>,
+{
+    reduce(
+        items,
+        &|range| range.fold(zero, |sum, i| sum + value(i)),
+        &|a, b| a + b,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn in_pool<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap()
+            .install(work)
+    }
+
+    #[test]
+    fn sums_have_the_same_bits_for_any_number_of_threads() {
+        let value = |i: usize| (i as f64 * 0.7).sin() * 10f64.powi(i as i32 % 7);
+        let serial = in_pool(1, || sum(10_007, 0.0, value));
+        for threads in [2, 3, 7] {
+            let parallel = in_pool(threads, || sum(10_007, 0.0, value));
+            assert_eq!(serial.to_bits(), parallel.to_bits(), "{threads} threads");
+        }
+    }
+
+    #[test]
+    fn every_slot_is_visited_once_with_its_own_index() {
+        for threads in [1, 3] {
+            let (mut a, mut b) = (vec![0usize; 5001], vec![0usize; 5001 * 3]);
+            let (mut c, mut d) = (a.clone(), a.clone());
+            in_pool(threads, || {
+                for_each_with_group((&mut a, &mut c, &mut d), &mut b, 3, |i, a, c, d, group| {
+                    *a += i;
+                    *c += 1;
+                    *d += 2 * i;
+                    for (k, slot) in group.iter_mut().enumerate() {
+                        *slot += 3 * i + k;
+                    }
+                });
+            });
+            assert!(a.iter().enumerate().all(|(i, v)| *v == i));
+            assert!(b.iter().enumerate().all(|(i, v)| *v == i));
+            assert!(c.iter().all(|v| *v == 1));
+            assert!(d.iter().enumerate().all(|(i, v)| *v == 2 * i));
+        }
+    }
+}

@@ -1,0 +1,299 @@
+//! What the reference configuration determines: computed once, never changed.
+
+use std::ops::Range;
+
+use jstsph_geometry::{Cells, Dimension};
+use jstsph_sph::{GradientOperator, PairOperator, Support};
+use jstsph_tensor::{Mat3, Vec3};
+
+use crate::SolverError;
+use crate::model::{
+    Laplacian, Model, ModelBody, Quadrature, Scheme, SmoothingReference, Weights,
+};
+
+/// Particles, points and operators of all bodies in the undeformed state.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    /// Plane strain or solid.
+    pub dimension: Dimension,
+    /// Reference positions X of all particles, m.
+    pub position: Vec<Vec3>,
+    /// Tributary volumes V_a of all particles, m³ (per metre of thickness in plane strain).
+    pub volume: Vec<f64>,
+    /// Volumes V_q of all evaluation points, m³.
+    pub point_volume: Vec<f64>,
+    /// Reference positions of all evaluation points, m.
+    pub point_position: Vec<Vec3>,
+    /// Density of every particle, kg/m³.
+    pub density: Vec<f64>,
+    /// The bodies.
+    pub bodies: Vec<BodyReference>,
+}
+
+/// One body: its ranges in the arrays of the simulation, its operators and constants.
+#[derive(Clone, Debug)]
+pub struct BodyReference {
+    /// Name.
+    pub name: String,
+    /// Its particles.
+    pub particles: Range<usize>,
+    /// Its evaluation points.
+    pub points: Range<usize>,
+    /// Density, kg/m³.
+    pub density: f64,
+    /// Pressure wave speed of the undeformed material, m/s.
+    pub wave_speed: f64,
+    /// Shear modulus, Pa.
+    pub shear_modulus: f64,
+    /// Smallest distance of two particles, m.
+    pub spacing: f64,
+    /// Kernel and smoothing length.
+    pub support: Support,
+    /// The operator B from particles to points.
+    pub gradient: GradientOperator,
+    /// Laplacian of the JST dissipation, when it is used.
+    pub laplacian: Option<PairOperator>,
+    /// Symmetric pair weights of upwind dissipation and hourglass stiffness, when they are used.
+    pub pairs: Option<PairOperator>,
+    /// Particles whose J a point sees, body indices: the two ends of a bond, or twice the particle.
+    pub ends: Vec<[u32; 2]>,
+    /// Points that make up a particle, with their shares (adding to one).
+    pub shares: Shares,
+    /// Lattice cells, for counting inverted ones and for drawing.
+    pub cells: Cells,
+}
+
+/// The points that belong to each particle and the share of each, V_q / (ends V_a).
+#[derive(Clone, Debug)]
+pub struct Shares {
+    offsets: Vec<u32>,
+    points: Vec<u32>,
+    shares: Vec<f64>,
+}
+
+impl Shares {
+    /// One point per particle, the particle itself.
+    fn identity(particles: usize) -> Self {
+        Self {
+            offsets: (0..=particles as u32).collect(),
+            points: (0..particles as u32).collect(),
+            shares: vec![1.0; particles],
+        }
+    }
+
+    /// Half of every bond to each of its ends.
+    fn of_bonds(particles: usize, ends: &[[u32; 2]], bond_volumes: &[f64]) -> Self {
+        let mut lists = vec![Vec::new(); particles];
+        for (q, pair) in ends.iter().enumerate() {
+            for &a in pair {
+                lists[a as usize].push(q as u32);
+            }
+        }
+        let (mut offsets, mut points, mut shares) = (vec![0u32], Vec::new(), Vec::new());
+        for list in &lists {
+            let total: f64 = list.iter().map(|&q| bond_volumes[q as usize]).sum();
+            points.extend_from_slice(list);
+            shares.extend(list.iter().map(|&q| bond_volumes[q as usize] / total));
+            offsets.push(points.len() as u32);
+        }
+        Self { offsets, points, shares }
+    }
+
+    /// Points and shares of one particle.
+    #[inline]
+    #[must_use]
+    pub fn of(&self, particle: usize) -> (&[u32], &[f64]) {
+        let range = self.offsets[particle] as usize..self.offsets[particle + 1] as usize;
+        (&self.points[range.clone()], &self.shares[range])
+    }
+
+    /// Volume-weighted mean of a scalar field of the points.
+    #[inline]
+    #[must_use]
+    pub fn mean(&self, particle: usize, field: impl Fn(usize) -> f64) -> f64 {
+        let (points, shares) = self.of(particle);
+        points.iter().zip(shares).fold(0.0, |sum, (&q, share)| sum + field(q as usize) * share)
+    }
+
+    /// Volume-weighted mean of a tensor field of the points.
+    #[inline]
+    #[must_use]
+    pub fn mean_tensor(&self, particle: usize, field: impl Fn(usize) -> Mat3) -> Mat3 {
+        let (points, shares) = self.of(particle);
+        points
+            .iter()
+            .zip(shares)
+            .fold(Mat3::zeros(), |sum, (&q, share)| sum + field(q as usize) * *share)
+    }
+}
+
+impl Reference {
+    /// Builds the operators of every body.
+    ///
+    /// # Errors
+    /// When a body lacks bonds that the quadrature needs, or neighbours that gradients need.
+    pub fn new(model: &Model) -> Result<Self, SolverError> {
+        let mut reference = Self {
+            dimension: model.dimension,
+            position: Vec::new(),
+            volume: Vec::new(),
+            point_volume: Vec::new(),
+            point_position: Vec::new(),
+            density: Vec::new(),
+            bodies: Vec::new(),
+        };
+        for body in &model.bodies {
+            reference.add(body, model)?;
+        }
+        Ok(reference)
+    }
+
+    fn add(&mut self, input: &ModelBody, model: &Model) -> Result<(), SolverError> {
+        let (body, scheme) = (&input.body, &model.scheme);
+        let failed = |source| SolverError::Operator {
+            body: input.name.clone(),
+            source,
+        };
+        let support = support(input, model.dimension, scheme);
+        let weights = match scheme.weights {
+            Weights::Interpolation => &body.weights,
+            Weights::Volume => &body.volumes,
+        };
+        let particles = body.positions.len();
+        let at_particles =
+            || GradientOperator::at_particles(&body.positions, weights, &support).map_err(failed);
+
+        let first_point = self.point_volume.len();
+        let (gradient, ends, shares) = match scheme.quadrature {
+            Quadrature::Particles => {
+                self.point_volume.extend_from_slice(&body.volumes);
+                self.point_position.extend_from_slice(&body.positions);
+                let ends = (0..particles as u32).map(|a| [a, a]).collect();
+                (at_particles()?, ends, Shares::identity(particles))
+            }
+            Quadrature::Bonds => {
+                let bonds = body.bonds.as_ref().ok_or_else(|| SolverError::NoBonds {
+                    body: input.name.clone(),
+                })?;
+                self.point_volume.extend_from_slice(&bonds.volumes);
+                self.point_position.extend_from_slice(&bonds.midpoints);
+                let gradient =
+                    GradientOperator::at_points(&bonds.midpoints, &body.positions, &support)
+                        .map_err(failed)?;
+                let shares = Shares::of_bonds(particles, &bonds.ends, &bonds.volumes);
+                (gradient, bonds.ends.clone(), shares)
+            }
+        };
+        // Half of each bond to each end: masses follow from the same volumes as the stresses.
+        let volume: Vec<f64> = match scheme.quadrature {
+            Quadrature::Particles => body.volumes.clone(),
+            Quadrature::Bonds => {
+                let mut volume = vec![0.0; particles];
+                for (pair, v) in ends.iter().zip(&self.point_volume[first_point..]) {
+                    volume[pair[0] as usize] += 0.5 * v;
+                    volume[pair[1] as usize] += 0.5 * v;
+                }
+                volume
+            }
+        };
+
+        let pair_support = Support {
+            smoothing_length: support.smoothing_length.max(body.spacing),
+            ..support
+        };
+        let stabilisation = &scheme.stabilisation;
+        let symmetric = || {
+            PairOperator::symmetric(&body.positions, &volume, &pair_support).map_err(failed)
+        };
+        let laplacian = match stabilisation.jst.map(|jst| jst.laplacian) {
+            None => None,
+            Some(Laplacian::Symmetric) => Some(symmetric()?),
+            Some(Laplacian::Corrected) => {
+                let nodal =
+                    GradientOperator::at_particles(&body.positions, weights, &pair_support)
+                        .map_err(failed)?;
+                Some(
+                    PairOperator::corrected(&body.positions, &volume, &nodal, &pair_support)
+                        .map_err(failed)?,
+                )
+            }
+        };
+        let pairs = (stabilisation.upwind != 0.0 || stabilisation.hourglass != 0.0)
+            .then(symmetric)
+            .transpose()?;
+
+        let first = self.position.len();
+        self.position.extend_from_slice(&body.positions);
+        self.volume.extend_from_slice(&volume);
+        self.density
+            .extend(std::iter::repeat_n(input.material.density(), particles));
+        self.bodies.push(BodyReference {
+            name: input.name.clone(),
+            particles: first..self.position.len(),
+            points: first_point..self.point_volume.len(),
+            density: input.material.density(),
+            wave_speed: input.material.wave_speeds().pressure,
+            shear_modulus: input.material.shear_modulus(),
+            spacing: body.spacing,
+            support,
+            gradient,
+            laplacian,
+            pairs,
+            ends,
+            shares,
+            cells: body.cells.clone(),
+        });
+        Ok(())
+    }
+
+    /// Mean number of particles in the sum of one evaluation point.
+    #[must_use]
+    pub fn neighbours_per_point(&self) -> f64 {
+        let entries: usize = self.bodies.iter().map(|body| body.gradient.entry_count()).sum();
+        entries as f64 / self.point_volume.len() as f64
+    }
+
+    /// Largest defect of summation by parts over the particles whose distance from the boundary
+    /// exceeds the support radius is zero by symmetry; this is the largest over *all* inner
+    /// particles given by `inner`, in units of one lattice face area.
+    #[must_use]
+    pub fn summation_defect(&self, body: usize, inner: impl Fn(usize) -> bool) -> f64 {
+        let body = &self.bodies[body];
+        let face = body.spacing.powi(self.dimension.count() as i32 - 1);
+        body.gradient
+            .boundary_vectors(&self.point_volume[body.points.clone()])
+            .iter()
+            .enumerate()
+            .filter(|(a, _)| inner(*a))
+            .map(|(_, vector)| vector.norm() / face)
+            .fold(0.0, f64::max)
+    }
+
+    /// The body that owns an evaluation point, and the index within it.
+    #[must_use]
+    pub fn owner_of_point(&self, point: usize) -> (usize, usize) {
+        let body = self
+            .bodies
+            .iter()
+            .position(|body| body.points.contains(&point))
+            .unwrap_or_default();
+        (body, point - self.bodies[body].points.start)
+    }
+}
+
+/// Kernel support of one body: h = ratio times (V/N)^(1/d) or times the spacing.
+fn support(input: &ModelBody, dimension: Dimension, scheme: &Scheme) -> Support {
+    let body = &input.body;
+    let length = match scheme.smoothing_reference {
+        SmoothingReference::Spacing => body.spacing,
+        SmoothingReference::Volume => {
+            let total: f64 = body.volumes.iter().sum();
+            (total / body.volumes.len() as f64).powf(1.0 / dimension.count() as f64)
+        }
+    };
+    Support {
+        kernel: scheme.kernel,
+        smoothing_length: scheme.smoothing_ratio * length,
+        dimension: dimension.count(),
+    }
+}

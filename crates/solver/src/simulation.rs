@@ -1,0 +1,594 @@
+//! A running simulation and the named pieces that the integrators are made of.
+
+use jstsph_material::MaterialBlock;
+use jstsph_tensor::Vec3;
+
+use crate::constraint::{MAX_OBSTACLES, Obstacles, Prescribed};
+use crate::force::Loads;
+use crate::leapfrog::Kick;
+use crate::model::{ConditionKind, Formulation, Integrator, Model, Scheme};
+use crate::reference::Reference;
+use crate::state::{Impulse, Ledger, State, Work, Workspace};
+use crate::strain::{Strains, constrain};
+use crate::time_step::{StableStep, stable_step};
+use crate::{
+    SolverError, dissipation, force, leapfrog, parallel, projection, strain, stress,
+    tvd_runge_kutta,
+};
+
+/// A simulation: a [`Model`] that moves.
+///
+/// Run it inside one rayon pool (`pool.install(|| ...)`): entering a pool from outside costs more
+/// than a step of a small problem. Results do not depend on the number of threads.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    pub(crate) reference: Reference,
+    pub(crate) scheme: Scheme,
+    pub(crate) materials: Vec<MaterialBlock>,
+    pub(crate) state: State,
+    pub(crate) work: Workspace,
+    pub(crate) ledger: Ledger,
+    pub(crate) prescribed: Prescribed,
+    pub(crate) obstacles: Obstacles,
+    loads: Loads,
+    /// State at the beginning of a Runge-Kutta step; empty for the leapfrog.
+    start: Option<Box<State>>,
+    /// Equivalent plastic strain of the points, kept when a dissipation depends on it.
+    plastic_strain: Vec<f64>,
+    pub(crate) time: f64,
+    pub(crate) dt: f64,
+    pub(crate) step: u64,
+    /// Whether momentum and positions belong to the same time.
+    pub(crate) synchronised: bool,
+    pub(crate) initial_energy: f64,
+    /// First time step, to which the floor is relative; zero before it is known.
+    pub(crate) first_dt: f64,
+}
+
+impl Simulation {
+    /// Builds operators, states and buffers. Nothing is allocated after this.
+    ///
+    /// # Errors
+    /// [`SolverError`] when the model is inconsistent or a body cannot be discretised.
+    pub fn new(model: Model) -> Result<Self, SolverError> {
+        check(&model)?;
+        let reference = Reference::new(&model)?;
+        let momentum = model
+            .bodies
+            .iter()
+            .flat_map(|body| {
+                let density = body.material.density();
+                body.initial_velocity.iter().map(move |velocity| velocity * density)
+            })
+            .collect();
+        let state = State::undeformed(&reference, momentum);
+        let materials: Vec<MaterialBlock> = model
+            .bodies
+            .iter()
+            .zip(&reference.bodies)
+            .map(|(input, body)| input.material.block(body.points.len()))
+            .collect();
+        let (prescribed, obstacles) = (Prescribed::new(&model), Obstacles::new(&model));
+        let particles = reference.position.len();
+        let points = reference.point_volume.len();
+        let ledger = Ledger {
+            momentum_before: state.momentum.clone(),
+            impulse: vec![Impulse::default(); particles],
+            work: vec![Work::default(); particles],
+            last_work: vec![Work::default(); particles],
+            plastic_dissipation: vec![0.0; points],
+            contact: obstacles.new_slots(particles),
+            condition_impulse: vec![Vec3::zeros(); prescribed.len()],
+        };
+        let work = Workspace::new(&reference);
+        let start = (model.scheme.integrator == Integrator::TvdRungeKutta)
+            .then(|| Box::new(state.clone()));
+        let plastic = if model.scheme.stabilisation.jst.is_some() { points } else { 0 };
+        let mut simulation = Self {
+            loads: Loads::new(&model),
+            scheme: model.scheme,
+            reference,
+            materials,
+            state,
+            work,
+            ledger,
+            prescribed,
+            obstacles,
+            start,
+            plastic_strain: vec![0.0; plastic],
+            time: 0.0,
+            dt: 0.0,
+            step: 0,
+            synchronised: true,
+            initial_energy: 0.0,
+            first_dt: 0.0,
+        };
+        // Momenta at time zero obey the prescribed velocities, without an impulse.
+        simulation.prescribed.apply(
+            &simulation.reference,
+            0.0,
+            0.0,
+            &mut simulation.state.momentum,
+            &mut simulation.ledger,
+        );
+        simulation.evaluate_stress(0.0)?;
+        simulation.initial_energy = simulation.energies().kinetic + simulation.energies().elastic;
+        Ok(simulation)
+    }
+
+    /// Advances by one stable time step, or by the rest of the time to `end` if that is shorter.
+    /// Does nothing at or after `end`.
+    ///
+    /// # Errors
+    /// [`SolverError`] when a point inverts, a value is no longer finite or the time step falls
+    /// below its floor. The state is then that of a step under way: go back to a saved one.
+    pub fn advance_step(&mut self, end: f64) -> Result<(), SolverError> {
+        if self.time >= end {
+            return Ok(());
+        }
+        match self.scheme.integrator {
+            Integrator::Leapfrog => leapfrog::step(self, end)?,
+            Integrator::TvdRungeKutta => tvd_runge_kutta::step(self, end)?,
+        }
+        self.step += 1;
+        Ok(())
+    }
+
+    /// Time of positions, strains and stresses, s.
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Steps made.
+    #[must_use]
+    pub fn step_count(&self) -> u64 {
+        self.step
+    }
+
+    /// Latest time step, s; zero before the first.
+    #[must_use]
+    pub fn time_step(&self) -> f64 {
+        self.dt
+    }
+
+    /// Whether the momenta belong to the time of the positions (always with TVD-RK2, at the
+    /// beginning and the end of a run with the leapfrog).
+    #[must_use]
+    pub fn is_synchronised(&self) -> bool {
+        self.synchronised
+    }
+
+    /// The unknowns.
+    #[must_use]
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// What never changes.
+    #[must_use]
+    pub fn reference(&self) -> &Reference {
+        &self.reference
+    }
+
+    /// The scheme in use.
+    #[must_use]
+    pub fn scheme(&self) -> &Scheme {
+        &self.scheme
+    }
+
+    /// The stable time step of the present state, s, CFL number included.
+    #[must_use]
+    pub fn stable_time_step(&self) -> f64 {
+        self.scheme.cfl * stable_step(&self.reference, &self.state).time
+    }
+
+    pub(crate) fn strains(&self) -> Strains {
+        Strains {
+            formulation: self.scheme.formulation,
+            quadrature: self.scheme.quadrature,
+        }
+    }
+
+    /// Δt = CFL min Δx λ_min / c (3.17), cut at `end`; checks that strains are finite.
+    pub(crate) fn next_time_step(&mut self, end: f64) -> Result<f64, SolverError> {
+        let stable = stable_step(&self.reference, &self.state);
+        let dt = self.scheme.cfl * stable.time;
+        if !dt.is_finite() {
+            return Err(self.not_finite(stable.point));
+        }
+        if self.first_dt == 0.0 {
+            self.first_dt = dt;
+        }
+        let limit = self.scheme.smallest_time_step * self.first_dt;
+        if dt < limit {
+            return Err(self.too_small(dt, limit, &stable));
+        }
+        // A last step below a thousandth of the stable one would come from round-off in the sum of
+        // steps; the present one is stretched over it instead.
+        let rest = end - self.time;
+        Ok(if rest <= dt * 1.001 { rest } else { dt })
+    }
+
+    pub(crate) fn velocity_gradient(&mut self) {
+        strain::velocity_gradient(&self.reference, &self.state, &mut self.work);
+    }
+
+    /// Internal force, stabilisation and loads of the present state; the torque of the internal
+    /// ones is taken out about `lever`.
+    pub(crate) fn forces(&mut self, lever: impl Fn(&State, usize) -> Vec3 + Sync) {
+        let stabilisation = &self.scheme.stabilisation;
+        force::internal(&self.reference, &mut self.work);
+        if stabilisation.upwind != 0.0 || stabilisation.hourglass != 0.0 {
+            force::average_to_particles(
+                &self.reference,
+                &self.state,
+                self.scheme.quadrature,
+                &mut self.work,
+            );
+        }
+        if stabilisation.hourglass != 0.0 {
+            force::hourglass(&self.reference, &self.state, stabilisation.hourglass, &mut self.work);
+        }
+        let dissipates = stabilisation.jst.is_some() || stabilisation.upwind != 0.0;
+        dissipation::evaluate(
+            stabilisation,
+            &self.reference,
+            &self.state,
+            &self.plastic_strain,
+            &mut self.work,
+        );
+        if self.scheme.projection {
+            let state = &self.state;
+            let lever = |a: usize| lever(state, a);
+            projection::conserve(&self.reference, &lever, &mut self.work.internal_force);
+            if dissipates {
+                projection::conserve(&self.reference, &lever, &mut self.work.dissipation);
+            }
+        }
+        self.loads.evaluate(&self.reference, self.time, &mut self.work.external_force);
+    }
+
+    pub(crate) fn evaluate_stress(&mut self, dt: f64) -> Result<(), SolverError> {
+        stress::evaluate(
+            self.strains(),
+            &self.reference,
+            &self.state,
+            &mut self.materials,
+            &mut self.work,
+            dt,
+        )
+        .map_err(|failure| self.constitutive(failure))
+    }
+
+    /// The one line where history moves.
+    pub(crate) fn commit_history(&mut self) {
+        self.materials.iter_mut().for_each(MaterialBlock::commit);
+        let plastic_work = &self.work.plastic_work;
+        parallel::for_each(&mut self.ledger.plastic_dissipation, |q, total| {
+            *total += plastic_work[q];
+        });
+        self.refresh_plastic_strain();
+    }
+
+    pub(crate) fn refresh_plastic_strain(&mut self) {
+        if !self.plastic_strain.is_empty() {
+            stress::equivalent_plastic_strain(
+                &self.reference,
+                &self.materials,
+                &mut self.plastic_strain,
+            );
+        }
+    }
+
+    pub(crate) fn move_obstacles(&mut self, time: f64, dt: f64) {
+        self.obstacles.advance(time, dt);
+    }
+
+    /// Prescribed velocities at `time` and contact over the travel of `dt` that follows.
+    pub(crate) fn constrain(&mut self, time: f64, dt: f64, factor: f64) {
+        let Self { reference, state, ledger, .. } = self;
+        self.prescribed.apply(reference, time, factor, &mut state.momentum, ledger);
+        self.obstacles.apply(reference, time, dt, factor, state, ledger);
+    }
+
+    /// Sets the clock; `end` exactly when the step was cut there.
+    pub(crate) fn advance_clock(&mut self, dt: f64, end: f64) {
+        let rest = end - self.time;
+        self.time = if rest <= dt { end } else { self.time + dt };
+    }
+
+    // Pieces of the leapfrog.
+
+    pub(crate) fn move_particles(&mut self, dt: f64) {
+        let Self { reference, state, .. } = self;
+        let State { position, momentum, .. } = state;
+        parallel::for_each(position, |a, x| *x += momentum[a] * (dt / reference.density[a]));
+    }
+
+    pub(crate) fn drift_strains(&mut self, dt: f64) {
+        self.book_jacobian_dissipation(dt);
+        strain::drift(self.strains(), &self.reference, &mut self.state, &mut self.work, dt);
+    }
+
+    pub(crate) fn advance_time(&mut self, dt: f64, end: f64) {
+        self.move_obstacles(self.time, dt);
+        self.advance_clock(dt, end);
+    }
+
+    /// p += Δt R over `duration`, then the constraints for the travel over `travel` that follows,
+    /// and the books of the kick.
+    pub(crate) fn kick(&mut self, kick: Kick, duration: f64, travel: f64) {
+        let Self { state, work, ledger, .. } = self;
+        parallel::for_each_triple(
+            &mut state.momentum,
+            &mut ledger.momentum_before,
+            &mut ledger.impulse,
+            |a, p, before, impulse| {
+                *before = *p;
+                *impulse = Impulse {
+                    numerical: work.dissipation[a] * duration,
+                    external: work.external_force[a] * duration,
+                    contact: Vec3::zeros(),
+                };
+                *p += impulse.numerical + impulse.external - work.internal_force[a] * duration;
+            },
+        );
+        let time = self.time;
+        let Self { reference, state, ledger, .. } = self;
+        self.prescribed.apply(reference, time + 0.5 * travel, 1.0, &mut state.momentum, ledger);
+        self.obstacles.apply(reference, time, travel, 1.0, state, ledger);
+
+        let Ledger { momentum_before, impulse, work: total, last_work, .. } = ledger;
+        let momentum = &state.momentum;
+        parallel::for_each_pair(total, last_work, |a, total, last| {
+            let mean = (momentum_before[a] + momentum[a]) * (0.5 / reference.density[a]);
+            let done = work_of(&impulse[a], &mean);
+            match kick {
+                // Half of twice the work is booked with the next kick: all of it by then.
+                Kick::Opening => *last = done.plus(done, 1.0),
+                Kick::Full => {
+                    *total = total.plus(*last, 0.5).plus(done, 0.5);
+                    *last = done;
+                }
+                Kick::Closing => {
+                    *total = total.plus(*last, 0.5).plus(done, 1.0);
+                    *last = Work::default();
+                }
+            }
+        });
+    }
+
+    /// Work that D(J) does on the volumetric energy over `dt`.
+    fn book_jacobian_dissipation(&mut self, dt: f64) {
+        if !self.scheme.stabilisation.jst.is_some_and(|jst| jst.on_jacobian) {
+            return;
+        }
+        let Self { state, work, ledger, .. } = self;
+        parallel::for_each(&mut ledger.work, |a, total| {
+            total.numerical += dt * work.volumetric_stress[a] / state.jacobian[a]
+                * work.jacobian_dissipation[a];
+        });
+    }
+
+    // Pieces of TVD-RK2.
+
+    pub(crate) fn open_books(&mut self) {
+        self.ledger.impulse.fill(Impulse::default());
+    }
+
+    pub(crate) fn save_start(&mut self) {
+        if let Some(start) = &mut self.start {
+            start.copy_from(&self.state);
+        }
+    }
+
+    /// u += Δt R(u), with the rates evaluated last (3.16a, b).
+    pub(crate) fn stage(&mut self, dt: f64) {
+        self.book_jacobian_dissipation(0.5 * dt);
+        let strains = self.strains();
+        let Self { reference, state, work, ledger, .. } = self;
+        strain::euler(strains, reference, state, work, dt);
+        let State { position, momentum, .. } = state;
+        parallel::for_each_triple(position, momentum, &mut ledger.impulse, |a, x, p, impulse| {
+            *x += *p * (dt / reference.density[a]);
+            impulse.numerical += work.dissipation[a] * (0.5 * dt);
+            impulse.external += work.external_force[a] * (0.5 * dt);
+            *p += (work.dissipation[a] + work.external_force[a] - work.internal_force[a]) * dt;
+        });
+    }
+
+    /// Forces of stage 2, with the lever arms xⁿ⁺¹ = ½ (xⁿ + x* + Δt p*/ρ).
+    pub(crate) fn stage_two_forces(&mut self, dt: f64) {
+        let start = self.start.take();
+        let density = std::mem::take(&mut self.reference.density);
+        let time = self.time;
+        self.time += dt;
+        if let Some(start) = &start {
+            self.forces(|state, a| {
+                (start.position[a] + state.position[a] + state.momentum[a] * (dt / density[a])) * 0.5
+            });
+        }
+        self.time = time;
+        self.reference.density = density;
+        self.start = start;
+    }
+
+    /// uⁿ⁺¹ = (uⁿ + u**)/2 (3.16c), then the strains that are not integrated.
+    pub(crate) fn average_with_start(&mut self) {
+        let strains = self.strains();
+        let Self { reference, state, start, .. } = self;
+        let Some(start) = start else { return };
+        parallel::for_each_triple(
+            &mut state.position,
+            &mut state.momentum,
+            &mut state.jacobian,
+            |a, x, p, j| {
+                *x = (start.position[a] + *x) * 0.5;
+                *p = (start.momentum[a] + *p) * 0.5;
+                *j = (start.jacobian[a] + *j) * 0.5;
+            },
+        );
+        parallel::for_each_pair(
+            &mut state.deformation_gradient,
+            &mut state.cofactor,
+            |q, f, h| {
+                *f = (start.deformation_gradient[q] + *f) * 0.5;
+                *h = (start.cofactor[q] + *h) * 0.5;
+            },
+        );
+        constrain(strains, reference, state);
+    }
+
+    /// Work of the impulses of a Runge-Kutta step, with the mean velocity of the step: their sum
+    /// is the change of kinetic energy exactly.
+    pub(crate) fn close_books(&mut self) {
+        let Self { reference, state, start, ledger, .. } = self;
+        let Some(start) = start else { return };
+        let impulse = &ledger.impulse;
+        parallel::for_each(&mut ledger.work, |a, total| {
+            let mean = (start.momentum[a] + state.momentum[a]) * (0.5 / reference.density[a]);
+            *total = total.plus(work_of(&impulse[a], &mean), 1.0);
+        });
+    }
+
+    // Errors, with everything a user needs to find the place.
+
+    fn not_finite(&self, point: usize) -> SolverError {
+        let (body, index) = self.reference.owner_of_point(point);
+        SolverError::NotFinite {
+            quantity: "deformation gradient",
+            what: self.point_name(),
+            index,
+            body: self.reference.bodies[body].name.clone(),
+            position: self.reference.point_position[point].into(),
+            time: self.time,
+            step: self.step,
+            cfl: self.scheme.cfl,
+        }
+    }
+
+    fn too_small(&self, time_step: f64, limit: f64, stable: &StableStep) -> SolverError {
+        let (body, index) = self.reference.owner_of_point(stable.point);
+        SolverError::TimeStepTooSmall {
+            time_step,
+            limit,
+            time: self.time,
+            step: self.step,
+            what: self.point_name(),
+            index,
+            body: self.reference.bodies[body].name.clone(),
+            position: self.current_point_position(body, index),
+            stretch: stable.stretch,
+        }
+    }
+
+    fn constitutive(&self, failure: stress::StressFailure) -> SolverError {
+        SolverError::Constitutive {
+            what: self.point_name(),
+            index: failure.point,
+            body: self.reference.bodies[failure.body].name.clone(),
+            position: self.current_point_position(failure.body, failure.point),
+            time: self.time,
+            step: self.step,
+            cfl: self.scheme.cfl,
+            source: failure.source,
+        }
+    }
+
+    /// `particle` or `bond`.
+    #[must_use]
+    pub fn point_name(&self) -> &'static str {
+        match self.scheme.quadrature {
+            crate::model::Quadrature::Particles => "particle",
+            crate::model::Quadrature::Bonds => "bond",
+        }
+    }
+
+    fn current_point_position(&self, body: usize, point: usize) -> [f64; 3] {
+        let body = &self.reference.bodies[body];
+        let [a, b] = body.ends[point].map(|end| body.particles.start + end as usize);
+        ((self.state.position[a] + self.state.position[b]) * 0.5).into()
+    }
+}
+
+/// Work of an impulse at a velocity.
+fn work_of(impulse: &Impulse, velocity: &Vec3) -> Work {
+    Work {
+        numerical: impulse.numerical.dot(velocity),
+        external: impulse.external.dot(velocity),
+        contact: impulse.contact.dot(velocity),
+    }
+}
+
+/// What the types of a model cannot express.
+fn check(model: &Model) -> Result<(), SolverError> {
+    let inconsistent = |what: String| Err(SolverError::Inconsistent { what });
+    if model.bodies.is_empty() {
+        return inconsistent("a simulation needs at least one body".into());
+    }
+    if model.obstacles.len() > MAX_OBSTACLES {
+        return inconsistent(format!(
+            "{} obstacles exceed the limit of {MAX_OBSTACLES}",
+            model.obstacles.len()
+        ));
+    }
+    for body in &model.bodies {
+        body.material.validate().map_err(|source| SolverError::Material {
+            body: body.name.clone(),
+            source,
+        })?;
+        if body.initial_velocity.len() != body.body.positions.len() {
+            return inconsistent(format!(
+                "body \"{}\" has {} particles but {} initial velocities",
+                body.name,
+                body.body.positions.len(),
+                body.initial_velocity.len()
+            ));
+        }
+    }
+    for condition in &model.conditions {
+        let Some(body) = model.bodies.get(condition.body) else {
+            return inconsistent(format!(
+                "condition \"{}\" refers to body {} of {}",
+                condition.name,
+                condition.body,
+                model.bodies.len()
+            ));
+        };
+        let particles = body.body.positions.len();
+        if let Some(particle) = condition.particles.iter().find(|a| **a as usize >= particles) {
+            return inconsistent(format!(
+                "condition \"{}\" refers to particle {particle} of {particles}",
+                condition.name
+            ));
+        }
+        if let ConditionKind::Traction { areas, .. } = &condition.kind
+            && areas.len() != condition.particles.len()
+        {
+            return inconsistent(format!(
+                "condition \"{}\" has {} areas for {} particles",
+                condition.name,
+                areas.len(),
+                condition.particles.len()
+            ));
+        }
+    }
+    let scheme = &model.scheme;
+    for (name, value) in [
+        ("cfl", scheme.cfl),
+        ("smoothing ratio", scheme.smoothing_ratio),
+    ] {
+        if !(value.is_finite() && value > 0.0) {
+            return inconsistent(format!("{name} is {value}, it must be positive"));
+        }
+    }
+    if scheme.formulation == Formulation::MomentumGradient
+        && scheme.stabilisation.jst.is_some_and(|jst| jst.on_jacobian)
+    {
+        return inconsistent(
+            "JST dissipation of J needs J as an unknown: formulation \"pFHJ\" or \"pFJ\"".into(),
+        );
+    }
+    Ok(())
+}

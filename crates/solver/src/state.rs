@@ -1,0 +1,153 @@
+//! The unknowns, the buffers of a step, and the books kept beside them.
+
+use jstsph_contact::CachedGap;
+use jstsph_tensor::{Mat3, Vec3};
+
+use crate::reference::Reference;
+
+/// The unknowns of the mixed scheme: x, p and J of the particles, F and H of the evaluation points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// Current positions x, m.
+    pub position: Vec<Vec3>,
+    /// Linear momentum p per unit reference volume, kg m⁻² s⁻¹. With the leapfrog, half a step
+    /// ahead of the positions unless [`Simulation::is_synchronised`](crate::Simulation::is_synchronised).
+    pub momentum: Vec<Vec3>,
+    /// Jacobian J of the particles.
+    pub jacobian: Vec<f64>,
+    /// Deformation gradient F of the points.
+    pub deformation_gradient: Vec<Mat3>,
+    /// Cofactor H of the points.
+    pub cofactor: Vec<Mat3>,
+}
+
+impl State {
+    /// The undeformed state with the given momenta.
+    pub(crate) fn undeformed(reference: &Reference, momentum: Vec<Vec3>) -> Self {
+        let points = reference.point_volume.len();
+        Self {
+            position: reference.position.clone(),
+            momentum,
+            jacobian: vec![1.0; reference.position.len()],
+            deformation_gradient: vec![Mat3::identity(); points],
+            cofactor: vec![Mat3::identity(); points],
+        }
+    }
+
+    /// Overwrites every array with that of `other`, without allocating.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.position.copy_from_slice(&other.position);
+        self.momentum.copy_from_slice(&other.momentum);
+        self.jacobian.copy_from_slice(&other.jacobian);
+        self.deformation_gradient.copy_from_slice(&other.deformation_gradient);
+        self.cofactor.copy_from_slice(&other.cofactor);
+    }
+}
+
+/// Buffers of one evaluation of the right-hand side; allocated once.
+#[derive(Clone, Debug)]
+pub(crate) struct Workspace {
+    /// G = grad(p/ρ) at the points, 1/s.
+    pub(crate) velocity_gradient: Vec<Mat3>,
+    /// Change of volume of a point over the step or per second, see the strain pass.
+    pub(crate) volume_change: Vec<f64>,
+    /// V_q P_q at the points, N m.
+    pub(crate) scaled_stress: Vec<Mat3>,
+    /// Kirchhoff pressure part τ_vol = J U'(J) of the particles, Pa.
+    pub(crate) volumetric_stress: Vec<f64>,
+    /// Plastic work of the last evaluation at the points, J/m³.
+    pub(crate) plastic_work: Vec<f64>,
+    /// T per unit reference volume, N/m³, hourglass stiffness included, after the projection.
+    pub(crate) internal_force: Vec<Vec3>,
+    /// D(p) of JST and upwind together, N/m³, after the projection.
+    pub(crate) dissipation: Vec<Vec3>,
+    /// D(J), 1/s.
+    pub(crate) jacobian_dissipation: Vec<f64>,
+    /// Tractions and body forces per unit reference volume, N/m³.
+    pub(crate) external_force: Vec<Vec3>,
+    /// First differences (Laplacians) of p and J.
+    pub(crate) laplacian: Vec<Vec3>,
+    pub(crate) jacobian_laplacian: Vec<f64>,
+    /// G and F averaged to the particles, for the pair stabilisations with bonds.
+    pub(crate) particle_velocity_gradient: Vec<Mat3>,
+    pub(crate) particle_deformation_gradient: Vec<Mat3>,
+}
+
+impl Workspace {
+    pub(crate) fn new(reference: &Reference) -> Self {
+        let (particles, points) = (reference.position.len(), reference.point_volume.len());
+        let pairs = reference.bodies.iter().any(|body| body.pairs.is_some());
+        let averaged = if pairs { particles } else { 0 };
+        Self {
+            velocity_gradient: vec![Mat3::zeros(); points],
+            volume_change: vec![0.0; points],
+            scaled_stress: vec![Mat3::zeros(); points],
+            volumetric_stress: vec![0.0; particles],
+            plastic_work: vec![0.0; points],
+            internal_force: vec![Vec3::zeros(); particles],
+            dissipation: vec![Vec3::zeros(); particles],
+            jacobian_dissipation: vec![0.0; particles],
+            external_force: vec![Vec3::zeros(); particles],
+            laplacian: vec![Vec3::zeros(); particles],
+            jacobian_laplacian: vec![0.0; particles],
+            particle_velocity_gradient: vec![Mat3::zeros(); averaged],
+            particle_deformation_gradient: vec![Mat3::zeros(); averaged],
+        }
+    }
+}
+
+/// Momentum changes of one particle within a step, per unit reference volume, by cause.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Impulse {
+    pub(crate) numerical: Vec3,
+    pub(crate) external: Vec3,
+    pub(crate) contact: Vec3,
+}
+
+/// Work done on one particle per unit reference volume, J/m³, by cause.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Work {
+    pub(crate) numerical: f64,
+    pub(crate) external: f64,
+    pub(crate) contact: f64,
+}
+
+impl Work {
+    pub(crate) fn plus(self, other: Self, factor: f64) -> Self {
+        Self {
+            numerical: self.numerical + factor * other.numerical,
+            external: self.external + factor * other.external,
+            contact: self.contact + factor * other.contact,
+        }
+    }
+}
+
+/// What one particle has to do with one part of one obstacle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ContactSlot {
+    /// Distance computed last, to skip particles that cannot have reached the wall since.
+    pub(crate) cache: CachedGap,
+    /// Impulse on the particle so far, N s.
+    pub(crate) impulse: Vec3,
+    /// How often the particle was put back onto the surface.
+    pub(crate) corrections: u32,
+}
+
+/// Books of a simulation: what was done by whom. They never act back on the unknowns.
+#[derive(Clone, Debug)]
+pub(crate) struct Ledger {
+    /// Momentum before the last kick (leapfrog), for quantities at the time of the positions.
+    pub(crate) momentum_before: Vec<Vec3>,
+    /// Impulses of the step under way.
+    pub(crate) impulse: Vec<Impulse>,
+    /// Work done up to the time of the positions.
+    pub(crate) work: Vec<Work>,
+    /// Work of the last kick (leapfrog), half of which is in `work`.
+    pub(crate) last_work: Vec<Work>,
+    /// Plastic dissipation of the points so far, J/m³.
+    pub(crate) plastic_dissipation: Vec<f64>,
+    /// Contact slots, particle by particle, one per obstacle part.
+    pub(crate) contact: Vec<ContactSlot>,
+    /// Impulse of each condition on its particles so far, N s.
+    pub(crate) condition_impulse: Vec<Vec3>,
+}

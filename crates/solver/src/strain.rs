@@ -1,0 +1,146 @@
+//! Strain measures: velocity gradient (3.11a) and the evolution of F, H and J (3.14).
+
+use jstsph_tensor::{Mat3, cofactor, double_dot, tensor_cross};
+
+use crate::model::{Formulation, Quadrature};
+use crate::parallel;
+use crate::reference::Reference;
+use crate::state::{State, Workspace};
+
+/// Which strain measures are integrated, and where they live.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Strains {
+    pub(crate) formulation: Formulation,
+    pub(crate) quadrature: Quadrature,
+}
+
+/// G_q = Σ_c (p_c/ρ) ⊗ B_qc at every point, 1/s.
+pub(crate) fn velocity_gradient(reference: &Reference, state: &State, work: &mut Workspace) {
+    for body in &reference.bodies {
+        let momentum = &state.momentum[body.particles.clone()];
+        let inverse_density = 1.0 / body.density;
+        parallel::fill(&mut work.velocity_gradient[body.points.clone()], |q| {
+            body.gradient.gradient_at(q, momentum) * inverse_density
+        });
+    }
+}
+
+/// Advances F, H and J by `dt` with the velocity gradient of mid-step: the drift of the leapfrog.
+///
+/// With constant G, F is linear and H quadratic in time; H is advanced exactly (it stays the
+/// cofactor of F), and J by Simpson's rule, exact for the cubic det F. With bonds, ln J of a
+/// particle grows by the shares of its bonds' ∫ tr(G F⁻¹) dt, midpoint rule.
+pub(crate) fn drift(
+    strains: Strains,
+    reference: &Reference,
+    state: &mut State,
+    work: &mut Workspace,
+    dt: f64,
+) {
+    let Workspace {
+        velocity_gradient,
+        volume_change,
+        jacobian_dissipation,
+        ..
+    } = work;
+    let integrated = strains.formulation == Formulation::MomentumGradientCofactorJacobian;
+    let bonds = strains.quadrature == Quadrature::Bonds;
+    parallel::for_each_triple(
+        &mut state.deformation_gradient,
+        &mut state.cofactor,
+        volume_change,
+        |q, f, h, change| {
+            let g = &velocity_gradient[q];
+            let start = if integrated { *h } else { cofactor(f) };
+            let quarter = *f + g * (0.25 * dt);
+            let half = *f + g * (0.5 * dt);
+            let middle = start + tensor_cross(&quarter, g) * (0.5 * dt);
+            let end = start + tensor_cross(&half, g) * dt;
+            *f += g * dt;
+            *change = if bonds {
+                // tr(G F⁻¹) = H : G / det F with det F = ⅓ H : F.
+                3.0 * dt * double_dot(&middle, g) / double_dot(&middle, &half)
+            } else {
+                let simpson = start + middle * 4.0 + end;
+                dt / 6.0 * double_dot(&simpson, g)
+            };
+            *h = if integrated { end } else { cofactor(f) };
+        },
+    );
+    for body in &reference.bodies {
+        let change = &volume_change[body.points.clone()];
+        let dissipation = &jacobian_dissipation[body.particles.clone()];
+        let gradients = &state.deformation_gradient[body.points.clone()];
+        parallel::for_each(&mut state.jacobian[body.particles.clone()], |a, jacobian| {
+            *jacobian = match (strains.formulation, bonds) {
+                (Formulation::MomentumGradient, _) => {
+                    body.shares.mean(a, |q| gradients[q].determinant())
+                }
+                (_, true) => *jacobian * body.shares.mean(a, |q| change[q]).exp(),
+                (_, false) => *jacobian + change[a],
+            } + dt * dissipation[a];
+        });
+    }
+}
+
+/// Advances F, H and J by `dt` with their rates at the present state: one stage of TVD-RK2.
+pub(crate) fn euler(
+    strains: Strains,
+    reference: &Reference,
+    state: &mut State,
+    work: &mut Workspace,
+    dt: f64,
+) {
+    let Workspace {
+        velocity_gradient,
+        volume_change,
+        jacobian_dissipation,
+        ..
+    } = work;
+    let bonds = strains.quadrature == Quadrature::Bonds;
+    parallel::for_each_triple(
+        &mut state.deformation_gradient,
+        &mut state.cofactor,
+        volume_change,
+        |q, f, h, rate| {
+            let g = &velocity_gradient[q];
+            *rate = if bonds {
+                3.0 * double_dot(h, g) / double_dot(h, f)
+            } else {
+                double_dot(h, g)
+            };
+            *h += tensor_cross(f, g) * dt;
+            *f += g * dt;
+        },
+    );
+    for body in &reference.bodies {
+        let rate = &volume_change[body.points.clone()];
+        let dissipation = &jacobian_dissipation[body.particles.clone()];
+        parallel::for_each(&mut state.jacobian[body.particles.clone()], |a, jacobian| {
+            let growth = if bonds {
+                *jacobian * body.shares.mean(a, |q| rate[q])
+            } else {
+                rate[a]
+            };
+            *jacobian += dt * (growth + dissipation[a]);
+        });
+    }
+    constrain(strains, reference, state);
+}
+
+/// Evaluates the measures that the reduced systems do not integrate: H = cof F and J = det F.
+pub(crate) fn constrain(strains: Strains, reference: &Reference, state: &mut State) {
+    if strains.formulation == Formulation::MomentumGradientCofactorJacobian {
+        return;
+    }
+    let gradients: &[Mat3] = &state.deformation_gradient;
+    parallel::fill(&mut state.cofactor, |q| cofactor(&gradients[q]));
+    if strains.formulation == Formulation::MomentumGradient {
+        for body in &reference.bodies {
+            let gradients = &gradients[body.points.clone()];
+            parallel::fill(&mut state.jacobian[body.particles.clone()], |a| {
+                body.shares.mean(a, |q| gradients[q].determinant())
+            });
+        }
+    }
+}

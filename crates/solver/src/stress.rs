@@ -1,0 +1,283 @@
+//! Stress at the evaluation points, from their strains and committed history. Pure: nothing here
+//! moves history; `commit` is called on one line of each integrator.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use jstsph_material::{
+    Block, BlockReader, BlockVisitor, Kinematics, Material, MaterialBlock, MaterialError,
+};
+use jstsph_tensor::{Mat3, double_dot};
+
+use crate::model::{Formulation, Quadrature};
+use crate::parallel;
+use crate::reference::{BodyReference, Reference};
+use crate::state::{State, Workspace};
+use crate::strain::Strains;
+
+/// What the points of one body see.
+#[derive(Clone, Copy)]
+struct Points<'a> {
+    strains: Strains,
+    body: &'a BodyReference,
+    jacobian: &'a [f64],
+    deformation_gradient: &'a [Mat3],
+    cofactor: &'a [Mat3],
+    volume: &'a [f64],
+    dt: f64,
+}
+
+impl Points<'_> {
+    /// Whether J is det F at the points themselves.
+    fn without_jacobian(&self) -> bool {
+        self.strains.formulation == Formulation::MomentumGradient
+    }
+
+    /// det F by the unknowns F and H, ⅓ H : F.
+    #[inline]
+    fn determinant(&self, q: usize) -> f64 {
+        double_dot(&self.cofactor[q], &self.deformation_gradient[q]) / 3.0
+    }
+
+    /// Kinematics of a point: J is its own, or the geometric mean of those of its ends, so that a
+    /// logarithmic pressure of the point is the mean of its ends' pressures.
+    #[inline]
+    fn kinematics(&self, q: usize) -> Kinematics {
+        let jacobian = if self.without_jacobian() {
+            self.determinant(q)
+        } else {
+            let [a, b] = self.body.ends[q];
+            let (ja, jb) = (self.jacobian[a as usize], self.jacobian[b as usize]);
+            // A bond one of whose ends is inverted must not look sound.
+            if a == b {
+                ja
+            } else if ja > 0.0 && jb > 0.0 {
+                (ja * jb).sqrt()
+            } else {
+                ja.min(jb)
+            }
+        };
+        Kinematics {
+            deformation_gradient: self.deformation_gradient[q],
+            jacobian,
+            dt: self.dt,
+        }
+    }
+}
+
+/// Finds the failure of a point by evaluating it again (responses are pure).
+struct Failure<'a> {
+    points: Points<'a>,
+    point: usize,
+}
+
+impl BlockReader for Failure<'_> {
+    type Output = Option<MaterialError>;
+    fn visit<M: Material>(&mut self, block: &Block<M>) -> Self::Output {
+        let now = self.points.kinematics(self.point);
+        block.model.respond(&now, &block.committed[self.point]).err()
+    }
+}
+
+struct Evaluation<'a> {
+    points: Points<'a>,
+    volumetric_stress: &'a mut [f64],
+    scaled_stress: &'a mut [Mat3],
+    plastic_work: &'a mut [f64],
+}
+
+impl BlockVisitor for Evaluation<'_> {
+    /// First point whose response failed.
+    type Output = Option<usize>;
+
+    fn visit<M: Material>(&mut self, block: &mut Block<M>) -> Self::Output {
+        let points = self.points;
+        let Block { model, committed, candidate } = block;
+        let (model, committed): (&M, &[M::History]) = (model, committed);
+        let without_jacobian = points.without_jacobian();
+        if !without_jacobian {
+            parallel::fill(self.volumetric_stress, |a| model.volumetric_stress(points.jacobian[a]));
+        }
+        let volumetric_stress: &[f64] = self.volumetric_stress;
+        let at_particles = points.strains.quadrature == Quadrature::Particles;
+        // Only touched by a failing point; the smallest index makes the report deterministic.
+        let failed = AtomicUsize::new(usize::MAX);
+        parallel::for_each_triple(
+            self.scaled_stress,
+            self.plastic_work,
+            candidate,
+            |q, scaled_stress, plastic_work, candidate| {
+                let now = points.kinematics(q);
+                match model.respond(&now, &committed[q]) {
+                    Ok(response) => {
+                        let [a, b] = points.body.ends[q];
+                        let pressure = if without_jacobian {
+                            model.volumetric_stress(now.jacobian)
+                        } else {
+                            0.5 * (volumetric_stress[a as usize] + volumetric_stress[b as usize])
+                        };
+                        let mut stress = response.kirchhoff_stress;
+                        stress.m11 += pressure;
+                        stress.m22 += pressure;
+                        stress.m33 += pressure;
+                        // P = σ H with σ = τ/J (A.4); with bonds τ F⁻ᵀ, conjugate to tr(G F⁻¹).
+                        let jacobian =
+                            if at_particles { now.jacobian } else { points.determinant(q) };
+                        *scaled_stress =
+                            stress * points.cofactor[q] * (points.volume[q] / jacobian);
+                        *plastic_work = response.plastic_work;
+                        *candidate = response.history;
+                    }
+                    Err(_) => {
+                        failed.fetch_min(q, Ordering::Relaxed);
+                    }
+                }
+            },
+        );
+        let failed = failed.into_inner();
+        (failed != usize::MAX).then_some(failed)
+    }
+}
+
+/// A failed response: body, point of the body, cause.
+#[derive(Debug)]
+pub(crate) struct StressFailure {
+    pub(crate) body: usize,
+    pub(crate) point: usize,
+    pub(crate) source: MaterialError,
+}
+
+/// V P at every point, from the state and the committed history; writes the candidate history.
+/// `dt` is the time since the committed history, for rate-dependent models.
+pub(crate) fn evaluate(
+    strains: Strains,
+    reference: &Reference,
+    state: &State,
+    materials: &mut [MaterialBlock],
+    work: &mut Workspace,
+    dt: f64,
+) -> Result<(), StressFailure> {
+    for (index, (body, material)) in reference.bodies.iter().zip(materials).enumerate() {
+        let points = points_of(strains, reference, body, state, dt);
+        let mut evaluation = Evaluation {
+            points,
+            volumetric_stress: &mut work.volumetric_stress[body.particles.clone()],
+            scaled_stress: &mut work.scaled_stress[body.points.clone()],
+            plastic_work: &mut work.plastic_work[body.points.clone()],
+        };
+        if let Some(point) = material.visit(&mut evaluation) {
+            let source = material
+                .visit_ref(&mut Failure { points, point })
+                .unwrap_or(MaterialError::NotFinite {
+                    jacobian: f64::NAN,
+                    determinant: f64::NAN,
+                });
+            return Err(StressFailure { body: index, point, source });
+        }
+    }
+    Ok(())
+}
+
+fn points_of<'a>(
+    strains: Strains,
+    reference: &'a Reference,
+    body: &'a BodyReference,
+    state: &'a State,
+    dt: f64,
+) -> Points<'a> {
+    Points {
+        strains,
+        body,
+        jacobian: &state.jacobian[body.particles.clone()],
+        deformation_gradient: &state.deformation_gradient[body.points.clone()],
+        cofactor: &state.cofactor[body.points.clone()],
+        volume: &reference.point_volume[body.points.clone()],
+        dt,
+    }
+}
+
+/// Elastic energy of one body: Σ V_q Ψ' at its points and Σ V_a U(J) at its particles, J.
+struct ElasticEnergy<'a> {
+    points: Points<'a>,
+    particle_volume: &'a [f64],
+}
+
+impl BlockReader for ElasticEnergy<'_> {
+    type Output = f64;
+    fn visit<M: Material>(&mut self, block: &Block<M>) -> f64 {
+        let points = self.points;
+        let at_points = parallel::sum(points.volume.len(), 0.0, |q| {
+            let now = points.kinematics(q);
+            let mut energy = block.model.point_energy(&now, &block.committed[q]);
+            if points.without_jacobian() {
+                energy += block.model.volumetric_energy(now.jacobian);
+            }
+            points.volume[q] * energy
+        });
+        if points.without_jacobian() {
+            return at_points;
+        }
+        at_points
+            + parallel::sum(self.particle_volume.len(), 0.0, |a| {
+                self.particle_volume[a] * block.model.volumetric_energy(points.jacobian[a])
+            })
+    }
+}
+
+/// Elastic energy of all bodies with the committed history, J.
+pub(crate) fn elastic_energy(
+    strains: Strains,
+    reference: &Reference,
+    state: &State,
+    materials: &[MaterialBlock],
+) -> f64 {
+    reference
+        .bodies
+        .iter()
+        .zip(materials)
+        .map(|(body, material)| {
+            material.visit_ref(&mut ElasticEnergy {
+                points: points_of(strains, reference, body, state, 0.0),
+                particle_volume: &reference.volume[body.particles.clone()],
+            })
+        })
+        .sum()
+}
+
+/// Reads one number per point from the committed history.
+struct ReadHistory<'a, F> {
+    read: &'a F,
+    out: &'a mut [f64],
+}
+
+impl<F: Fn(&dyn HistoryView) -> f64 + Sync> BlockReader for ReadHistory<'_, F> {
+    type Output = ();
+    fn visit<M: Material>(&mut self, block: &Block<M>) {
+        let read = self.read;
+        parallel::fill(self.out, |q| read(&block.committed[q]));
+    }
+}
+
+/// The part of a history that every model has, without its type.
+pub(crate) trait HistoryView {
+    fn equivalent_plastic_strain(&self) -> f64;
+}
+
+impl<H: jstsph_material::History> HistoryView for H {
+    fn equivalent_plastic_strain(&self) -> f64 {
+        jstsph_material::History::equivalent_plastic_strain(self)
+    }
+}
+
+/// Equivalent plastic strain of every point.
+pub(crate) fn equivalent_plastic_strain(
+    reference: &Reference,
+    materials: &[MaterialBlock],
+    out: &mut [f64],
+) {
+    for (body, material) in reference.bodies.iter().zip(materials) {
+        material.visit_ref(&mut ReadHistory {
+            read: &|history: &dyn HistoryView| history.equivalent_plastic_strain(),
+            out: &mut out[body.points.clone()],
+        });
+    }
+}

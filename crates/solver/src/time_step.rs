@@ -1,0 +1,128 @@
+//! The stable time step (3.17).
+
+use jstsph_tensor::{Mat3, largest_eigenvalue, norm_squared};
+
+use crate::parallel;
+use crate::reference::Reference;
+use crate::state::State;
+
+/// Candidates whose upper bound is below the present maximum by this factor are skipped; it is far
+/// above the round-off of either number, so that skipping never changes the maximum.
+const BOUND_MARGIN: f64 = 1.0 + 1e-9;
+
+/// Largest 1/λ² over a set of points and where it occurs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Steepest {
+    pub(crate) inverse_stretch_squared: f64,
+    pub(crate) point: usize,
+}
+
+/// The stable step and the point that limits it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StableStep {
+    /// min over bodies of Δx λ_min / c, s, before the CFL number; NaN when a strain is not finite.
+    pub(crate) time: f64,
+    /// Limiting point, index in the simulation.
+    pub(crate) point: usize,
+    /// Smallest principal stretch there.
+    pub(crate) stretch: f64,
+}
+
+/// (F⁻¹ F⁻ᵀ), whose largest principal value is one over the smallest squared principal stretch.
+#[inline]
+fn inverse_cauchy_green(deformation_gradient: &Mat3, cofactor: &Mat3) -> Mat3 {
+    let f = deformation_gradient;
+    let h = cofactor;
+    let determinant = f.m11 * h.m11 + f.m12 * h.m12 + f.m13 * h.m13;
+    h.transpose() * h * (1.0 / (determinant * determinant))
+}
+
+/// Δt / CFL = min Δx λ_min / c_p over all points: compression makes waves faster in the reference
+/// configuration by one over the smallest principal stretch (3.17; the algorithm box's formula
+/// is garbled, docs/theory.md).
+pub(crate) fn stable_step(reference: &Reference, state: &State) -> StableStep {
+    let mut result = StableStep {
+        time: f64::INFINITY,
+        point: 0,
+        stretch: 1.0,
+    };
+    for body in &reference.bodies {
+        let start = body.points.start;
+        let gradients = &state.deformation_gradient[body.points.clone()];
+        let cofactors = &state.cofactor[body.points.clone()];
+        let steepest = parallel::reduce(
+            gradients.len(),
+            &|range| {
+                let mut best = Steepest {
+                    inverse_stretch_squared: 0.0,
+                    point: range.start,
+                };
+                for q in range {
+                    let inverse = inverse_cauchy_green(&gradients[q], &cofactors[q]);
+                    let bound = norm_squared(&inverse).sqrt();
+                    // The Frobenius norm bounds the largest principal value; NaN never skips.
+                    if bound * BOUND_MARGIN < best.inverse_stretch_squared {
+                        continue;
+                    }
+                    let value = if bound.is_finite() { largest_eigenvalue(&inverse) } else { f64::NAN };
+                    if value.is_nan() {
+                        return Steepest {
+                            inverse_stretch_squared: f64::NAN,
+                            point: q,
+                        };
+                    }
+                    if value > best.inverse_stretch_squared {
+                        best = Steepest {
+                            inverse_stretch_squared: value,
+                            point: q,
+                        };
+                    }
+                }
+                best
+            },
+            &|a: Steepest, b: Steepest| {
+                if a.inverse_stretch_squared.is_nan() || a.inverse_stretch_squared >= b.inverse_stretch_squared {
+                    a
+                } else {
+                    b
+                }
+            },
+        );
+        let stretch = 1.0 / steepest.inverse_stretch_squared.sqrt();
+        let time = body.spacing * stretch / body.wave_speed;
+        if time.is_nan() {
+            return StableStep {
+                time,
+                point: start + steepest.point,
+                stretch,
+            };
+        }
+        if time < result.time {
+            result = StableStep {
+                time,
+                point: start + steepest.point,
+                stretch,
+            };
+        }
+    }
+    result
+}
+
+/// Smallest principal stretch of a point.
+pub(crate) fn smallest_stretch(deformation_gradient: &Mat3) -> f64 {
+    let cofactor = jstsph_tensor::cofactor(deformation_gradient);
+    1.0 / largest_eigenvalue(&inverse_cauchy_green(deformation_gradient, &cofactor)).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn smallest_stretch_of_a_diagonal_is_its_smallest_entry() {
+        let f = Mat3::from_diagonal(&jstsph_tensor::Vec3::new(1.4, 0.25, 0.8));
+        assert!((smallest_stretch(&f) - 0.25).abs() < 1e-15);
+        let rotation = Mat3::new(0.6, -0.8, 0.0, 0.8, 0.6, 0.0, 0.0, 0.0, 1.0);
+        assert!((smallest_stretch(&(rotation * f)) - 0.25).abs() < 1e-14);
+    }
+}
