@@ -8,9 +8,10 @@ use crate::document::{Node, Value};
 use crate::error::{Origin, Problem};
 use crate::material::Materials;
 use crate::schema;
-use crate::section::{Field, Section, components, count, to_integer, vector};
+use crate::section::{Field, Section};
 use crate::signal::{Scope, VARIABLES, signals};
 use crate::units::Measure;
+use crate::value::{components, count, to_integer, vector};
 
 /// Places of a body in the case file, for mistakes that only show later.
 #[derive(Clone, Debug)]

@@ -5,8 +5,13 @@
 
 use std::fmt;
 
+/// A function of one argument with its name.
+pub type Function = (&'static str, fn(f64) -> f64);
+/// A function of two arguments with its name.
+pub type FunctionOfTwo = (&'static str, fn(f64, f64) -> f64);
+
 /// Functions of one argument.
-pub const FUNCTIONS: &[(&str, fn(f64) -> f64)] = &[
+pub const FUNCTIONS: &[Function] = &[
     ("abs", f64::abs),
     ("sign", |x| if x == 0.0 { 0.0 } else { x.signum() }),
     ("step", |x| if x < 0.0 { 0.0 } else { 1.0 }),
@@ -29,7 +34,7 @@ pub const FUNCTIONS: &[(&str, fn(f64) -> f64)] = &[
 ];
 
 /// Functions of two arguments.
-pub const FUNCTIONS_OF_TWO: &[(&str, fn(f64, f64) -> f64)] =
+pub const FUNCTIONS_OF_TWO: &[FunctionOfTwo] =
     &[("min", f64::min), ("max", f64::max), ("atan2", f64::atan2)];
 
 /// Named constants.

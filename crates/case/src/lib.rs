@@ -55,6 +55,7 @@ mod section;
 mod selection;
 mod signal;
 mod suggestion;
+mod value;
 
 pub mod expression;
 pub mod schema;

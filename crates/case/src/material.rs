@@ -6,8 +6,9 @@ use serde::Deserialize;
 use crate::document::{Node, Value};
 use crate::error::{Origin, Problem};
 use crate::schema::Limit;
-use crate::section::{Field, number};
+use crate::section::Field;
 use crate::units::{Measure, parse_unit};
+use crate::value::number;
 
 /// The materials of one case by name.
 pub(crate) struct Materials {

@@ -8,9 +8,10 @@ use jstsph_tensor::Vec3;
 use crate::document::{Node, Value};
 use crate::error::Problem;
 use crate::schema::{self, Limit};
-use crate::section::{Field, Section, number, vector};
+use crate::section::{Field, Section};
 use crate::signal::{Scope, VARIABLES, velocity_components};
 use crate::units::Measure;
+use crate::value::{number, shown, vector};
 
 /// How far a particle may stand in an obstacle at the start unless the case allows more, over the
 /// spacing of its body.
@@ -92,12 +93,10 @@ fn check_overlap(
         .problem(
             form,
             format!(
-                "body `{}` overlaps obstacle `{}` at the start: particle {deepest} at ({}, {}, {}) m is {:.4e} m inside it, allowed are {allowed:.1e} m",
+                "body `{}` overlaps obstacle `{}` at the start: particle {deepest} at {} m is {:.4e} m inside it, allowed are {allowed:.1e} m",
                 body.name,
                 obstacle.name,
-                x.x,
-                x.y,
-                x.z,
+                shown(&x),
                 -gap
             ),
         )

@@ -7,8 +7,9 @@ use jstsph_tensor::Vec3;
 use crate::document::Node;
 use crate::error::Problem;
 use crate::schema;
-use crate::section::{Section, components};
+use crate::section::Section;
 use crate::selection::read_where;
+use crate::value::components;
 
 /// Reads one probe; `taken` are the names of those before it.
 pub(crate) fn read_probe(

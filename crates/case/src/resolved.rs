@@ -76,5 +76,55 @@ fn line(text: &mut String, keys: &[Key], name: &str, value: &Value) {
         .find(|key| key.name == name)
         .and_then(|key| key.kind.unit());
     let comment = unit.map_or(String::new(), |unit| format!("  # {unit}"));
-    let _ = writeln!(text, "{} = {value}{comment}", quoted(name));
+    let _ = writeln!(text, "{} = {}{comment}", quoted(name), inline(value));
+}
+
+/// A value on one line; very large and very small numbers with an exponent.
+fn inline(value: &Value) -> String {
+    match value {
+        Value::Float(number) => float(*number),
+        Value::Array(items) => format!(
+            "[{}]",
+            items.iter().map(inline).collect::<Vec<_>>().join(", ")
+        ),
+        Value::Table(table) => {
+            let entries: Vec<String> = table
+                .iter()
+                .map(|(name, value)| format!("{} = {}", quoted(name), inline(value)))
+                .collect();
+            format!("{{ {} }}", entries.join(", "))
+        }
+        other => other.to_string(),
+    }
+}
+
+/// The shortest text that reads back to the same double.
+fn float(number: f64) -> String {
+    let size = number.abs();
+    if size != 0.0 && !(1e-3..1e6).contains(&size) {
+        format!("{number:e}")
+    } else {
+        format!("{number:?}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short_toml_floats_that_read_back_exactly() {
+        for (number, text) in [
+            (69e9, "6.9e10"),
+            (0.045, "0.045"),
+            (1e-6, "1e-6"),
+            (0.0, "0.0"),
+            (-2.0, "-2.0"),
+            (0.1 + 0.2, "0.30000000000000004"),
+        ] {
+            assert_eq!(float(number), text);
+            let read: toml::Value = text.parse().expect("TOML");
+            assert_eq!(read.as_float(), Some(number));
+        }
+    }
 }

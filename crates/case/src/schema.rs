@@ -3,17 +3,82 @@
 
 use crate::units::Measure;
 
-mod tables;
+use Kind::{Choice, Number, Other, Table, Tables, Text, Vector};
+use Presence::{Default, Optional, Required};
 
-pub(crate) use tables::{
-    BIHARMONIC, BOX, FORMULATIONS, HALF_SPACE, INITIAL_VELOCITY, INTEGRATORS, JST, LAPLACIANS,
-    PRECISIONS, PROFILE, QUADRATURES, ROTATION, SIDES, SIGNAL, SMOOTHING_REFERENCES, STATISTICS,
-    VELOCITY_COMPONENTS, WEIGHTS,
+mod bodies;
+mod conditions;
+mod numerics;
+
+pub use bodies::{BODY, LATTICE, SELECTION, SHAPES};
+pub(crate) use bodies::{BOX, HALF_SPACE, INITIAL_VELOCITY, ROTATION, SIGNAL};
+pub use conditions::{BOUNDARY, CHAIN, FIELDS, OBSTACLE, OBSTACLE_FORMS, PROBE};
+pub(crate) use conditions::{PROFILE, SIDES, STATISTICS, VELOCITY_COMPONENTS};
+pub(crate) use numerics::{
+    BIHARMONIC, FORMULATIONS, INTEGRATORS, JST, LAPLACIANS, PRECISIONS, QUADRATURES,
+    SMOOTHING_REFERENCES, WEIGHTS,
 };
-pub use tables::{
-    BODY, BOUNDARY, CASE, CHAIN, FIELDS, LATTICE, OBSTACLE, OBSTACLE_FORMS, OUTPUT, PROBE, SCHEME,
-    SELECTION, SHAPES, STABILISATION, TIME,
-};
+pub use numerics::{OUTPUT, SCHEME, STABILISATION, TIME};
+
+/// A whole case file.
+pub const CASE: &[Key] = &[
+    key(
+        "title",
+        Text,
+        Default("\"\""),
+        "one line that says what is simulated",
+    ),
+    key(
+        "dimension",
+        Choice(|| vec!["plane-strain", "3d"]),
+        Required,
+        "plane strain in x, y, or solid",
+    ),
+    key(
+        "time",
+        Table(TIME),
+        Required,
+        "duration and time integration",
+    ),
+    key("scheme", Table(SCHEME), Optional, "discretisation"),
+    key(
+        "stabilisation",
+        Table(STABILISATION),
+        Optional,
+        "dissipation and hourglass control",
+    ),
+    key(
+        "material",
+        Other("tables [material.NAME.MODEL]; see `jstsph list materials`"),
+        Optional,
+        "materials of this case; shipped ones need no table",
+    ),
+    key("body", Tables(BODY), Required, "deformable bodies"),
+    key(
+        "boundary",
+        Tables(BOUNDARY),
+        Optional,
+        "conditions on selections of particles",
+    ),
+    key(
+        "obstacle",
+        Tables(OBSTACLE),
+        Optional,
+        "rigid obstacles with frictionless contact",
+    ),
+    key(
+        "probe",
+        Tables(PROBE),
+        Optional,
+        "numbers written to history.csv and summary.json",
+    ),
+    key(
+        "output",
+        Table(OUTPUT),
+        Optional,
+        "what is written how often",
+    ),
+];
 
 /// One key of a table.
 #[derive(Clone, Copy, Debug)]
@@ -167,6 +232,24 @@ impl Kind {
         }
     }
 }
+
+const fn key(name: &'static str, kind: Kind, presence: Presence, meaning: &'static str) -> Key {
+    Key {
+        name,
+        kind,
+        presence,
+        meaning,
+    }
+}
+
+const LENGTH: Kind = Number(Measure::LENGTH, Limit::Positive);
+const PLACE: Kind = Vector(Measure::LENGTH);
+const COEFFICIENT: Kind = Number(Measure::NUMBER, Limit::NotNegative);
+const AXIS: Kind = Choice(|| vec!["x", "y", "z"]);
+const FIELD: Kind = Choice(|| names(FIELDS));
+const WHERE: Kind = Other(
+    "a selection: \"body\", \"body.face\" or a table { body, face | boundary | half_space | box | and | or | not }",
+);
 
 /// First entries of a list of pairs.
 pub(crate) fn names<T>(pairs: &[(&'static str, T)]) -> Vec<&'static str> {

@@ -8,8 +8,9 @@ use crate::case::{OutputSettings, TimeSettings};
 use crate::document::{Node, Value};
 use crate::error::Problem;
 use crate::schema::{self, Limit};
-use crate::section::{Field, Section, number};
+use crate::section::{Field, Section};
 use crate::units::Measure;
+use crate::value::number;
 
 /// `[time]` with the integrator and the smallest step, which belong to the scheme.
 pub(crate) struct Time {

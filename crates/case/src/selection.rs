@@ -8,6 +8,7 @@ use crate::document::{Node, Value};
 use crate::error::Problem;
 use crate::schema;
 use crate::section::Section;
+use crate::value::shown;
 
 /// Particles of one body.
 #[derive(Clone, Debug)]
@@ -66,8 +67,9 @@ fn extent(body: &ModelBody) -> String {
         high = high.sup(x);
     }
     format!(
-        "its particles lie between ({}, {}, {}) and ({}, {}, {}) m",
-        low.x, low.y, low.z, high.x, high.y, high.z
+        "its particles lie between {} and {} m",
+        shown(&low),
+        shown(&high)
     )
 }
 

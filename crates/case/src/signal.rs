@@ -10,8 +10,9 @@ use crate::document::{Node, Value};
 use crate::error::Problem;
 use crate::expression::{CONSTANTS, Expression, FUNCTIONS, FUNCTIONS_OF_TWO};
 use crate::schema::{self, Limit};
-use crate::section::{Section, number};
+use crate::section::Section;
 use crate::units::Measure;
+use crate::value::{number, shown};
 
 /// Variables of expressions, in the order of their values.
 pub(crate) const VARIABLES: [&str; 4] = ["t", "X", "Y", "Z"];
@@ -126,7 +127,10 @@ fn expression(section: &mut Section<'_>, scope: Scope<'_>) -> Result<Signal, Pro
         if !value.is_finite() {
             return Err(section.problem(
                 "expression",
-                format!("`{path}` is {value} at t = 0 and reference position ({}, {}, {}) m, but must be finite", x.x, x.y, x.z),
+                format!(
+                    "`{path}` is {value} at t = 0 and reference position {} m, but must be finite",
+                    shown(x)
+                ),
             ));
         }
     }
@@ -143,7 +147,7 @@ pub(crate) fn signals(
 ) -> Result<([Signal; 3], toml::Value), Problem> {
     let mut found = [const { Signal::Constant(0.0) }; 3];
     let mut resolved = Vec::new();
-    for (axis, item) in crate::section::per_axis(node, path, dimension)?
+    for (axis, item) in crate::value::per_axis(node, path, dimension)?
         .into_iter()
         .enumerate()
     {

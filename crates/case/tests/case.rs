@@ -203,13 +203,14 @@ fn resolved_case_writes_defaults_units_and_shipped_materials() {
         "end = 0.045  # s",
         "cfl = 0.3",
         "smallest_step = 1e-6",
+        "restart_interval = 0.0045  # s",
         "smoothing_ratio = 1.2",
         "weights = \"interpolation\"",
         "[material.al1100_ecae.hencky_von_mises]",
         "[material.\"my copper\".hencky_von_mises]",
         "density = 8930.0",
         "law = \"inelastic\"",
-        "history_interval = 9e-5  # s",
+        "frame_interval = 9e-4  # s",
     ] {
         assert!(
             resolved.lines().any(|found| found == line),

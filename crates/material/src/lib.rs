@@ -38,6 +38,10 @@
 //! A new model is one file in `models/` and one line in `models.rs`; a new hardening law one file in
 //! `hardening/` and one line in `hardening.rs`. Either brings its conformance tests with it.
 
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 mod block;
 mod error;
 mod history;

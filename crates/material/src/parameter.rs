@@ -5,7 +5,7 @@ use crate::ParameterError;
 use std::fmt;
 
 /// A model or a law as the user selects it: its name, one line about it and its keys.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Description {
     /// Name in a case file, `snake_case`.
     pub name: &'static str,
@@ -16,7 +16,7 @@ pub struct Description {
 }
 
 /// One key of a model's or a law's table.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Key {
     /// Name in a case file, `snake_case`.
     pub name: &'static str,
@@ -29,7 +29,7 @@ pub struct Key {
 }
 
 /// Which values a key may have. Infinite values and NaN are never allowed.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Range {
     /// Greater than zero.
     Positive,
@@ -65,12 +65,6 @@ impl Range {
                 Self::PositiveUpTo { most } => 0.0 < value && value <= most,
                 Self::OneOf(_) => false,
             }
-    }
-}
-
-impl PartialEq for Range {
-    fn eq(&self, other: &Self) -> bool {
-        self.to_string() == other.to_string()
     }
 }
 

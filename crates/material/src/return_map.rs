@@ -18,7 +18,8 @@ const MAX_ITERATIONS: usize = 100;
 ///
 /// Newton's iteration inside a bracket. For a law that does not soften g falls strictly from
 /// g(0) > 0 to g(τ_eq/3μ) < 0, so the root exists and is unique. For linear hardening the first
-/// iterate is exact, D = f / (3 μ + J H), Greto & Kulasegaram 2019, (A.15).
+/// iterate is exact, D = (τ_eq,trial − J σ_Y) / (3 μ + J H): Greto & Kulasegaram 2019, (A.15), with the
+/// factors J it lacks.
 ///
 /// # Arguments
 /// * `trial_stress`: τ_eq,trial, Pa, above J σ_Y(ε_p).
@@ -81,7 +82,7 @@ mod tests {
             slope: modulus,
         })
         .unwrap();
-        // Greto & Kulasegaram 2019, (A.15).
+        // Greto & Kulasegaram 2019, (A.15), for Kirchhoff stresses.
         let expected =
             (trial - jacobian * (yield_stress + modulus * 0.25)) / (3.0 * mu + jacobian * modulus);
         assert!((increment / expected - 1.0).abs() < 1e-13);

@@ -195,6 +195,14 @@ mod tests {
     }
 
     #[test]
+    fn the_readme_describes_every_column() {
+        let readme = include_str!("../README.md");
+        for column in HISTORY_COLUMNS {
+            assert!(readme.contains(&format!("`{}`", column.name)), "{column:?}");
+        }
+    }
+
+    #[test]
     fn a_probe_may_not_take_the_name_of_a_column() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("history.csv");

@@ -28,6 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let layers = 10 * per_radius + 1;
     let lattice = Lattice::Cubic { spacing: Spacing::Radial { per_radius, layers } };
     let body = build_body(shape, lattice, Dimension::Solid)?;
+    let base = face_nodes(&body, "base")?;
     let rim = face_nodes(&body, "rim_base")?;
     let everything: Vec<u32> = (0..body.positions.len() as u32).collect();
     let copper = library()
@@ -43,7 +44,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             material: copper.spec.clone(),
             body_force: None,
         }],
-        conditions: vec![],
+        conditions: if std::env::var("HOLD").is_ok() { vec![jstsph_solver::Condition { name: "base".into(), body: 0, particles: base, kind: jstsph_solver::ConditionKind::Velocity([None, None, Some(jstsph_solver::Signal::Constant(0.0))]) }] } else { vec![] },
         obstacles: vec![ModelObstacle {
             obstacle: Obstacle {
                 name: "wall".into(),
@@ -92,6 +93,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for probe in &probes {
         println!("{} = {:.4} mm", probe.name, 1e3 * simulation.probe(probe, &fields)[0]);
     }
+    for a in 0..simulation.reference().position.len() { let x = simulation.reference().position[a]; if x.z == 0.0 && x.norm() > 2.8e-3*(3.0f64/3.0) { let y = simulation.state().position[a]; println!("{:.3} {:.3} | {:.4} {:.4} {:.5} r {:.4}", x.x*1e3, x.y*1e3, y.x*1e3, y.y*1e3, y.z*1e3, (y.x*y.x+y.y*y.y).sqrt()*1e3); } }
     let largest = fields.equivalent_plastic_strain.iter().copied().fold(0.0, f64::max);
     let energies = simulation.energies();
     println!("largest plastic strain {largest:.3}, energies {energies:?}");

@@ -17,15 +17,20 @@ use serde::{Deserialize, Serialize};
 /// Hencky elasticity with von Mises plasticity, Greto & Kulasegaram 2019, Appendix A.
 ///
 /// ```text
-///   b_e = F C_p⁻¹ Fᵀ,   ε' = ½ dev log b_e,   τ' = 2 μ ε',   τ_vol = κ ln J            (A.1)-(A.9)
-///   f = τ_eq − J σ_Y(ε_p),   τ_eq = √(3/2) |τ'|                                             (A.10)
-///   ν = τ' / (√(2/3) |τ'|),   ε' ← ε' − Δε_p ν,   τ_eq ← τ_eq − 3 μ Δε_p = J σ_Y(ε_p + Δε_p)
-///   C_p⁻¹ = F⁻¹ b_e F⁻ᵀ,   ε_p ← ε_p + Δε_p
+///   b_e = F C_p⁻¹ Fᵀ                                                      (A.8)
+///   ε' = ½ dev log b_e,   τ' = 2 μ ε',   τ_vol = κ ln J                   (A.6), (A.9)
+///   τ_eq = √(3/2) |τ'|,   elastic if τ_eq ≤ J σ_Y(ε_p)                    (A.10)
+///   ν = τ' / (√(2/3) |τ'|)                                                (A.11)
+///   τ_eq − 3 μ Δε_p = J σ_Y(ε_p + Δε_p)                                   (A.12), (A.13)
+///   ε' ← ε' − Δε_p ν,   τ' ← τ' (1 − 3 μ Δε_p/τ_eq)                       (A.16), (A.17)
+///   C_p⁻¹ ← F⁻¹ b_e F⁻ᵀ,   ε_p ← ε_p + Δε_p                               (A.19)
 /// ```
 ///
-/// Differences from the paper, reasoned in docs/theory.md: (A.11) as printed lacks the √(2/3), which
-/// contradicts (A.15); and the yield function uses the *Cauchy* stress τ/J with the independent J,
-/// as tests report flow stress.
+/// Differences from the paper, reasoned in docs/theory.md. (A.11) lacks the √(2/3), which contradicts
+/// (A.15). (A.9) subtracts ⅓ ln J, here it is ⅓ Σ ln λ_e: the same where J = det F, and trace-free
+/// where the independent J has drifted. (A.12) and (A.15) take the stiffness of the Kirchhoff stress
+/// for that of the Cauchy stress: a Cauchy stress falls by 3 μ Δε_p/J. Yield is on the Cauchy stress
+/// τ/J, as in the paper.
 ///
 /// The update is fully implicit (backward Euler in the logarithm), so the yield condition holds at
 /// the end of every step, whatever its size. The return is radial and coaxial: b_e only changes its

@@ -160,6 +160,13 @@ impl Rect {
         self.bottom - self.top
     }
 
+    /// Whether a point lies inside or, up to rounding, on the edge.
+    pub(crate) fn contains(&self, point: [f64; 2]) -> bool {
+        const SLACK: f64 = 0.01;
+        (self.left - SLACK..=self.right + SLACK).contains(&point[0])
+            && (self.top - SLACK..=self.bottom + SLACK).contains(&point[1])
+    }
+
     pub(crate) fn corners(&self) -> Vec<[f64; 2]> {
         vec![
             [self.left, self.top],

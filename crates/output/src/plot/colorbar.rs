@@ -108,7 +108,7 @@ impl ColourBar {
             }
         }
         let ruler = self.ruler();
-        for tick in ruler.ticks(height / 50.0) {
+        for tick in ruler.ticks(height / 42.0) {
             let y = bar.bottom - ruler.place(tick.value) * height;
             canvas.line([bar.right, y], [bar.right + TICK, y], stroke);
             let at = [bar.right + TICK + 3.0, y + HALF_HEIGHT * TICK_SIZE];

@@ -9,6 +9,7 @@ mod canvas;
 mod clip;
 mod colorbar;
 mod colormap;
+mod hidden;
 mod lines;
 mod particles;
 mod raster;

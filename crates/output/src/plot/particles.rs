@@ -5,6 +5,7 @@ use jstsph_tensor::Vec3;
 use super::axis::{Axes, BELOW, HALF_HEIGHT, Ruler, TICK_SIZE, TITLE, TITLE_SIZE, draw_title};
 use super::canvas::{Anchor, Canvas, INK, PAPER, Rect, STEEL, Stroke, mix};
 use super::colorbar::{self, ColourBar};
+use super::hidden::visible;
 use super::{Axis, ColourMap, Quantity, Section, View, clip, text};
 use crate::OutputError;
 use crate::error::{require_finite, require_length};
@@ -14,6 +15,8 @@ const LARGEST: [f64; 2] = [580.0, 470.0];
 /// Limits of the plot area's width over its height.
 const ASPECT: [f64; 2] = [0.4, 4.0];
 const MARGIN: f64 = 12.0;
+/// Height of the strip below an oblique view with the axes' directions and the scale bar.
+const DIRECTIONS: f64 = 60.0;
 
 /// What to draw of a body, all lengths in m.
 #[derive(Debug, Clone, PartialEq)]
@@ -179,17 +182,11 @@ fn draw_dots(
     let radius = (0.52 * plot.spacing * layout.pixels_per_metre).max(0.7);
     // Stable, so that particles of one layer keep their order and pictures are reproducible.
     dots.sort_by(|a, b| a.depth.total_cmp(&b.depth));
-    for dot in dots {
-        let centre = layout.place(dot.place);
-        let reach = Rect {
-            left: layout.frame.left - 0.01,
-            top: layout.frame.top - 0.01,
-            right: layout.frame.right + 0.01,
-            bottom: layout.frame.bottom + 0.01,
-        };
-        let is_inside = (reach.left..=reach.right).contains(&centre[0])
-            && (reach.top..=reach.bottom).contains(&centre[1]);
-        if !is_inside {
+    dots.reverse();
+    let centres: Vec<[f64; 2]> = dots.iter().map(|dot| layout.place(dot.place)).collect();
+    let is_visible = visible(&centres, radius, &layout.frame);
+    for ((dot, centre), is_visible) in dots.iter().zip(centres).zip(is_visible).rev() {
+        if !is_visible || !layout.frame.contains(centre) {
             continue;
         }
         let colour = bar.colour(dot.value);
@@ -273,7 +270,7 @@ impl Layout {
         };
         layout.frame.right = layout.frame.left + width;
         layout.frame.bottom = layout.frame.top + height;
-        let mut below = 0.0;
+        let mut below = DIRECTIONS;
         if plot.view.plane().is_some() {
             let left = layout.axes(["", ""]).left_space(height);
             layout.frame.left += left;
@@ -321,7 +318,10 @@ impl Layout {
         }
         self.draw_scale_bar(canvas);
         let [right, up, _] = plot.view.frame();
-        let corner = [self.frame.left + 34.0, self.frame.bottom - 26.0];
+        let corner = [
+            self.frame.left + 34.0,
+            self.frame.bottom + DIRECTIONS - 22.0,
+        ];
         for axis in [Axis::X, Axis::Y, Axis::Z] {
             let direction = axis.direction();
             let toward = [right.dot(&direction), -up.dot(&direction)];
@@ -345,7 +345,10 @@ impl Layout {
             .find(|length| *length <= 0.25 * shown)
             .unwrap_or(power);
         let pixels = length / self.unit.0 * self.pixels_per_metre;
-        let (right, y) = (self.frame.right - 8.0, self.frame.bottom - 10.0);
+        let (right, y) = (
+            self.frame.right - 8.0,
+            self.frame.bottom + DIRECTIONS - 22.0,
+        );
         let stroke = Stroke::solid(INK, 2.0);
         canvas.line([right - pixels, y], [right, y], stroke);
         let at = [right - 0.5 * pixels, y - 7.0];

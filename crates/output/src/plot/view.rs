@@ -63,8 +63,12 @@ impl View {
         let [right, up] = match self {
             Self::Oblique(axis) => {
                 let up = axis.direction();
-                // The two other axes in cyclic order, as x and y are when z is up.
-                let first = Vec3::new(up.y, up.z, up.x);
+                // x points to the right unless it is up.
+                let first = if axis == Axis::X {
+                    Vec3::y()
+                } else {
+                    Vec3::x()
+                };
                 let second = up.cross(&first);
                 // Elevation about 22 degrees, azimuth about 30: no two axes coincide.
                 let toward = (first * 0.5 - second * 0.85 + up * 0.4).normalize();
@@ -117,6 +121,7 @@ mod tests {
             let direction = axis.direction();
             assert!(direction.dot(&right).abs() < 1e-15);
             assert!(direction.dot(&up) > 0.8 && direction.dot(&toward) > 0.3);
+            assert!(axis == Axis::X || right.x > 0.8);
         }
     }
 

@@ -31,7 +31,7 @@ fn now(f: Mat3, jacobian: f64) -> Kinematics {
 }
 
 /// The update in principal Hencky strains, as Greto & Kulasegaram 2019, Appendix A, writes it, for
-/// linear hardening: (A.4)-(A.15) with ν by the √(2/3) that (A.11) lacks.
+/// linear hardening: (A.7)-(A.19), for Kirchhoff stresses and with the √(2/3) that (A.11) lacks.
 fn by_principal_strains(
     model: &HenckyVonMises,
     now: &Kinematics,
@@ -125,7 +125,7 @@ fn simple_tension_has_its_closed_form() {
                 &PlasticHistory::INITIAL,
             )
             .unwrap();
-        // τ_eq = 3 μ ε of an isochoric extension; (A.15) with the Cauchy yield stress.
+        // τ_eq = 3 μ ε of an isochoric extension; (A.15) for Kirchhoff stresses.
         let increment = (3.0 * mu * strain - jacobian * YIELD_STRESS) / (3.0 * mu + jacobian * MODULUS);
         let axial_deviator = 2.0 * mu * (strain - increment);
         assert!((response.plastic_increment - increment).abs() < 1e-14);

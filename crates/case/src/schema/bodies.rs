@@ -1,0 +1,222 @@
+//! Keys of `[[body]]`, its shape, lattice and motion, and of selections and signals.
+
+use super::Kind::{Count, Flag, Number, OneOf, Other, Signals, Table, TableOr, Text, Vector};
+use super::Presence::{Default, Derived, Optional, Required};
+use super::{AXIS, Key, LENGTH, Limit, PLACE, key};
+use crate::units::Measure;
+
+/// `[[body]]`.
+pub const BODY: &[Key] = &[
+    key(
+        "name",
+        Text,
+        Required,
+        "name by which selections, probes and output know it",
+    ),
+    key("shape", OneOf(SHAPES), Required, "reference shape"),
+    key(
+        "lattice",
+        Table(LATTICE),
+        Required,
+        "how it is filled with particles; nodes lie on its boundary",
+    ),
+    key(
+        "material",
+        Text,
+        Required,
+        "name of a [material.NAME] table of this case or of a shipped material",
+    ),
+    key(
+        "velocity",
+        TableOr(
+            INITIAL_VELOCITY,
+            "one velocity per axis: numbers or expressions of X, Y, Z",
+        ),
+        Optional,
+        "initial velocity; zero unless given",
+    ),
+    key(
+        "body_force",
+        Signals(Measure::ACCELERATION),
+        Optional,
+        "force per mass",
+    ),
+];
+
+/// Shapes.
+pub const SHAPES: &[Key] = &[
+    key(
+        "box",
+        Table(BOX),
+        Optional,
+        "box along the axes; faces left, right (x), bottom, top (y in plane strain, z in 3d), front, back (y in 3d)",
+    ),
+    key(
+        "disc",
+        Table(DISC),
+        Optional,
+        "disc, plane strain only; face rim",
+    ),
+    key(
+        "cylinder",
+        Table(CYLINDER),
+        Optional,
+        "cylinder along an axis, 3d only; faces base, top, side, edges rim_base, rim_top",
+    ),
+];
+
+/// A box.
+pub(crate) const BOX: &[Key] = &[
+    key("min", PLACE, Required, "lowest corner"),
+    key("max", PLACE, Required, "highest corner"),
+];
+
+/// A disc.
+pub(crate) const DISC: &[Key] = &[
+    key("centre", PLACE, Required, "centre"),
+    key("radius", LENGTH, Required, "radius"),
+];
+
+/// A cylinder.
+pub(crate) const CYLINDER: &[Key] = &[
+    key("base", PLACE, Required, "centre of the face `base`"),
+    key(
+        "axis",
+        AXIS,
+        Default("\"z\""),
+        "axis, pointing from `base` to `top`",
+    ),
+    key("radius", LENGTH, Required, "radius"),
+    key("height", LENGTH, Required, "height"),
+];
+
+/// How a shape is filled.
+pub const LATTICE: &[Key] = &[
+    key(
+        "spacing",
+        LENGTH,
+        Optional,
+        "cubic lattice with about this spacing",
+    ),
+    key(
+        "counts",
+        Other("nodes along each axis, e.g. [21, 11]"),
+        Optional,
+        "cubic lattice with these nodes, for a box",
+    ),
+    key(
+        "per_radius",
+        Count(1),
+        Optional,
+        "cubic lattice with spacing radius / per_radius, for a disc or cylinder",
+    ),
+    key(
+        "rings",
+        Count(1),
+        Optional,
+        "concentric rings around the centre node, for a disc or cylinder (quadrature at the particles only)",
+    ),
+    key(
+        "per_ring",
+        Count(3),
+        Default("8"),
+        "nodes of the first ring; ring k has k times as many",
+    ),
+    key(
+        "layers",
+        Count(2),
+        Optional,
+        "nodes along the axis of a cylinder, with per_radius or rings",
+    ),
+];
+
+/// Initial velocity as a table.
+pub(crate) const INITIAL_VELOCITY: &[Key] =
+    &[key("rotation", Table(ROTATION), Required, "rigid rotation")];
+
+/// Rigid rotation.
+pub(crate) const ROTATION: &[Key] = &[
+    key(
+        "rate",
+        Number(Measure::RATE, Limit::Any),
+        Required,
+        "angular velocity",
+    ),
+    key(
+        "axis",
+        Other("direction as three numbers; z in plane strain"),
+        Derived("z in plane strain, required in 3d"),
+        "axis of rotation, any length",
+    ),
+    key("centre", PLACE, Required, "a point of the axis"),
+];
+
+/// Signals that are not constants.
+pub(crate) const SIGNAL: &[Key] = &[
+    key(
+        "table",
+        Other("[[time, value], ...] with ascending times"),
+        Optional,
+        "piecewise linear in time, constant before and after",
+    ),
+    key(
+        "expression",
+        Text,
+        Optional,
+        "expression in SI units of t, X, Y, Z (time and reference position)",
+    ),
+];
+
+/// A selection of particles.
+pub const SELECTION: &[Key] = &[
+    key(
+        "body",
+        Text,
+        Derived("the only body"),
+        "body; outermost table only",
+    ),
+    key("all", Flag, Optional, "true: every particle"),
+    key(
+        "face",
+        Text,
+        Optional,
+        "particles on a face of the body's shape",
+    ),
+    key(
+        "boundary",
+        Flag,
+        Optional,
+        "true: every particle on the boundary",
+    ),
+    key(
+        "half_space",
+        Table(HALF_SPACE),
+        Optional,
+        "particles on the side to which the normal points",
+    ),
+    key("box", Table(BOX), Optional, "particles in a box"),
+    key(
+        "and",
+        Other("a list of selections"),
+        Optional,
+        "particles in all of them",
+    ),
+    key(
+        "or",
+        Other("a list of selections"),
+        Optional,
+        "particles in any of them",
+    ),
+    key("not", Other("a selection"), Optional, "particles not in it"),
+];
+
+/// A half-space.
+pub(crate) const HALF_SPACE: &[Key] = &[
+    key("point", PLACE, Required, "a point of its face"),
+    key(
+        "normal",
+        Vector(Measure::NUMBER),
+        Required,
+        "direction into the half-space, any length",
+    ),
+];

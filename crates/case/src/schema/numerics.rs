@@ -1,0 +1,231 @@
+//! Keys of `[time]`, `[scheme]`, `[stabilisation]` and `[output]`.
+
+use jstsph_solver::{Formulation, Integrator, Laplacian, Quadrature, SmoothingReference, Weights};
+use jstsph_sph::Kernel;
+
+use super::Kind::{Choice, Flag, Number, Table, TableOr};
+use super::Presence::{Default, Derived, Optional, Required};
+use super::{COEFFICIENT, Key, Limit, key, names};
+use crate::case::Precision;
+use crate::units::Measure;
+
+/// `[time]`.
+pub const TIME: &[Key] = &[
+    key(
+        "end",
+        Number(Measure::TIME, Limit::Positive),
+        Required,
+        "simulated time",
+    ),
+    key(
+        "cfl",
+        Number(Measure::NUMBER, Limit::Positive),
+        Derived("0.5 for leapfrog, 0.3 for tvd-rk2"),
+        "time step times wave speed over spacing (3.17)",
+    ),
+    key(
+        "integrator",
+        Choice(|| names(INTEGRATORS)),
+        Default("\"leapfrog\""),
+        "time integration",
+    ),
+    key(
+        "smallest_step",
+        Number(Measure::NUMBER, Limit::Within(0.0, 1.0)),
+        Default("1e-6"),
+        "the run stops when the time step falls below this fraction of the first",
+    ),
+];
+
+/// Integrators by name.
+pub(crate) const INTEGRATORS: &[(&str, Integrator)] = &[
+    ("leapfrog", Integrator::Leapfrog),
+    ("tvd-rk2", Integrator::TvdRungeKutta),
+];
+
+/// `[scheme]`.
+pub const SCHEME: &[Key] = &[
+    key(
+        "quadrature",
+        Choice(|| names(QUADRATURES)),
+        Default("\"bonds\""),
+        "where strains and stresses live: at lattice bonds (no zero-energy modes) or at the particles (the paper's scheme)",
+    ),
+    key(
+        "formulation",
+        Choice(|| names(FORMULATIONS)),
+        Default("\"pFHJ\""),
+        "unknowns of the mixed system (3.14)",
+    ),
+    key(
+        "kernel",
+        Choice(|| Kernel::ALL.iter().map(|kernel| kernel.name()).collect()),
+        Default("\"quintic-spline\""),
+        "kernel function",
+    ),
+    key(
+        "smoothing_ratio",
+        Number(Measure::NUMBER, Limit::Positive),
+        Derived("0.8 for bonds, 1.2 for particles"),
+        "smoothing length over the reference length",
+    ),
+    key(
+        "smoothing_reference",
+        Choice(|| names(SMOOTHING_REFERENCES)),
+        Derived("spacing for bonds, volume for particles"),
+        "reference length: lattice spacing, or (volume / particles)^(1/d)",
+    ),
+    key(
+        "weights",
+        Choice(|| names(WEIGHTS)),
+        Default("\"interpolation\""),
+        "weights of the gradient sum: full cells (second order) or tributary volumes (the paper's)",
+    ),
+    key(
+        "projection",
+        Flag,
+        Derived("false for bonds, true for particles"),
+        "whether resultants and torques of internal forces are projected out (3.15)",
+    ),
+];
+
+/// Quadratures by name.
+pub(crate) const QUADRATURES: &[(&str, Quadrature)] = &[
+    ("bonds", Quadrature::Bonds),
+    ("particles", Quadrature::Particles),
+];
+
+/// Formulations by name.
+pub(crate) const FORMULATIONS: &[(&str, Formulation)] = &[
+    ("pFHJ", Formulation::MomentumGradientCofactorJacobian),
+    ("pFJ", Formulation::MomentumGradientJacobian),
+    ("pF", Formulation::MomentumGradient),
+];
+
+/// Smoothing references by name.
+pub(crate) const SMOOTHING_REFERENCES: &[(&str, SmoothingReference)] = &[
+    ("spacing", SmoothingReference::Spacing),
+    ("volume", SmoothingReference::Volume),
+];
+
+/// Interpolation weights by name.
+pub(crate) const WEIGHTS: &[(&str, Weights)] = &[
+    ("interpolation", Weights::Interpolation),
+    ("volume", Weights::Volume),
+];
+
+/// `[stabilisation]`.
+pub const STABILISATION: &[Key] = &[
+    key(
+        "upwind",
+        COEFFICIENT,
+        Derived("0 for bonds, 0.3 for particles unless jst is given"),
+        "upwind pair dissipation of the velocity that the gradient does not see",
+    ),
+    key(
+        "hourglass",
+        COEFFICIENT,
+        Default("0.0"),
+        "hourglass stiffness over the shear modulus",
+    ),
+    key(
+        "jst",
+        Table(JST),
+        Optional,
+        "Jameson-Schmidt-Turkel dissipation (3.13)",
+    ),
+];
+
+/// `stabilisation.jst`.
+pub(crate) const JST: &[Key] = &[
+    key(
+        "harmonic",
+        COEFFICIENT,
+        Default("0.0"),
+        "coefficient of the Laplacian",
+    ),
+    key(
+        "biharmonic",
+        TableOr(BIHARMONIC, "a number, zero or positive"),
+        Default("0.0009765625"),
+        "coefficient of the double Laplacian, 1/1024 unless given; as a table it falls with the plastic strain (4.2)",
+    ),
+    key(
+        "on_jacobian",
+        Flag,
+        Default("false"),
+        "whether J is dissipated too, as in the paper",
+    ),
+    key(
+        "laplacian",
+        Choice(|| names(LAPLACIANS)),
+        Default("\"symmetric\""),
+        "form of the Laplacian",
+    ),
+];
+
+/// A biharmonic coefficient that falls with the plastic strain.
+pub(crate) const BIHARMONIC: &[Key] = &[
+    key(
+        "initial",
+        COEFFICIENT,
+        Default("0.015625"),
+        "value without plastic strain",
+    ),
+    key(
+        "final",
+        COEFFICIENT,
+        Default("0.000244140625"),
+        "value from `plastic_strain` on",
+    ),
+    key(
+        "plastic_strain",
+        Number(Measure::NUMBER, Limit::Positive),
+        Default("0.5"),
+        "equivalent plastic strain at which the final value is reached",
+    ),
+];
+
+/// Forms of the Laplacian by name.
+pub(crate) const LAPLACIANS: &[(&str, Laplacian)] = &[
+    ("symmetric", Laplacian::Symmetric),
+    ("corrected", Laplacian::Corrected),
+];
+
+/// `[output]`.
+pub const OUTPUT: &[Key] = &[
+    key(
+        "history_interval",
+        Number(Measure::TIME, Limit::Positive),
+        Derived("end / 500"),
+        "simulated time between rows of history.csv",
+    ),
+    key(
+        "frame_interval",
+        Number(Measure::TIME, Limit::Positive),
+        Derived("end / 50"),
+        "simulated time between frames for ParaView",
+    ),
+    key(
+        "restart_interval",
+        Number(Measure::TIME, Limit::Positive),
+        Derived("end / 10"),
+        "simulated time between restart files",
+    ),
+    key(
+        "precision",
+        Choice(|| names(PRECISIONS)),
+        Default("\"double\""),
+        "numbers in frames",
+    ),
+    key(
+        "compression",
+        Flag,
+        Default("true"),
+        "whether frames are compressed",
+    ),
+];
+
+/// Precisions by name.
+pub(crate) const PRECISIONS: &[(&str, Precision)] =
+    &[("double", Precision::Double), ("single", Precision::Single)];
