@@ -1,1 +1,10 @@
-//! Shared helpers of the verification and validation tests.
+//! Shared helpers of the verification, property and validation tests.
+//!
+//! [`setup`] builds models in code, [`exact`] compares a run with an exact solution, [`study`]
+//! turns errors over resolutions into observed orders and asserts them.
+
+pub mod exact;
+pub mod setup;
+pub mod study;
+
+pub use study::{Study, observed_order};

@@ -64,6 +64,17 @@ pub struct OutputSettings {
     pub precision: Precision,
     /// Whether frames are compressed.
     pub compression: bool,
+    /// What frames show in ParaView.
+    pub cells: FrameCells,
+}
+
+/// What frames show in ParaView.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrameCells {
+    /// The cells of the lattice, when every body has one; else the particles.
+    Lattice,
+    /// The particles as points.
+    Particles,
 }
 
 /// Numbers in frames.

@@ -61,7 +61,7 @@ pub mod expression;
 pub mod schema;
 pub mod units;
 
-pub use case::{Case, OutputSettings, Precision, TimeSettings, load, parse};
+pub use case::{Case, FrameCells, OutputSettings, Precision, TimeSettings, load, parse};
 pub use error::{CaseError, InputError, Place};
 pub use list::{List, ListEntry, lists};
 pub use suggestion::nearest;

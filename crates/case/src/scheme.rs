@@ -142,6 +142,7 @@ pub(crate) fn read_output(node: &Node, end: f64) -> Result<(OutputSettings, toml
         restart_interval: section.number_or("restart_interval", end / 10.0)?,
         precision: section.choice("precision", schema::PRECISIONS)?,
         compression: section.flag("compression")?,
+        cells: section.choice("cells", schema::CELLS)?,
     };
     Ok((settings, section.finish()))
 }

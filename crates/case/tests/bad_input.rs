@@ -544,8 +544,7 @@ fn broken_toml_and_unreadable_files_are_reported() {
 fn set_up_errors_of_the_solver_point_at_the_body() {
     let text = GOOD.replace("cfl = 0.3", "cfl = 0.3\n[scheme]\nsmoothing_ratio = 0.1");
     let case = parse("c", "c.toml", &text, &[]).expect("valid so far");
-    let error = jstsph_solver::Simulation::new(case.model.clone())
-        .expect_err("too few neighbours");
+    let error = jstsph_solver::Simulation::new(case.model.clone()).expect_err("too few neighbours");
     let message = case.setup_error(&error).to_string();
     assert!(
         message.starts_with("c.toml:11:11: body \"billet\": "),

@@ -1,1 +1,12 @@
-fn main() {}
+//! The `jstsph` command.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    jstsph_cli::run(
+        std::env::args_os(),
+        &mut std::io::stdout(),
+        &mut std::io::stderr(),
+    )
+    .into()
+}

@@ -6,7 +6,7 @@ use jstsph_sph::Kernel;
 use super::Kind::{Choice, Flag, Number, Table, TableOr};
 use super::Presence::{Default, Derived, Optional, Required};
 use super::{COEFFICIENT, Key, Limit, key, names};
-use crate::case::Precision;
+use crate::case::{FrameCells, Precision};
 use crate::units::Measure;
 
 /// `[time]`.
@@ -224,8 +224,20 @@ pub const OUTPUT: &[Key] = &[
         Default("true"),
         "whether frames are compressed",
     ),
+    key(
+        "cells",
+        Choice(|| names(CELLS)),
+        Default("\"lattice\""),
+        "what ParaView shows: the cells of the lattice (where all bodies have one) or the particles as points",
+    ),
 ];
 
 /// Precisions by name.
 pub(crate) const PRECISIONS: &[(&str, Precision)] =
     &[("double", Precision::Double), ("single", Precision::Single)];
+
+/// What frames show, by name.
+pub(crate) const CELLS: &[(&str, FrameCells)] = &[
+    ("lattice", FrameCells::Lattice),
+    ("particles", FrameCells::Particles),
+];

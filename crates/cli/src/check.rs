@@ -1,0 +1,115 @@
+//! `jstsph check`.
+
+use std::fmt::Write as _;
+use std::time::{Duration, Instant};
+
+use jstsph_case::Case;
+use jstsph_solver::{Quadrature, Simulation};
+
+use crate::arguments::CheckOptions;
+use crate::console::Console;
+use crate::error::CliError;
+use crate::recorder::extra_columns;
+use crate::simulate;
+use crate::verdict::{duration, seconds};
+
+/// Time spent on measuring the speed.
+const TRIAL: Duration = Duration::from_millis(500);
+
+/// Validates a case and says what would run.
+pub(crate) fn run(options: &CheckOptions, console: &mut Console<'_>) -> Result<u8, CliError> {
+    let case = jstsph_case::load(&options.case, &options.overrides)?;
+    extra_columns(&case)?;
+    let (pool, threads) = simulate::pool(&case, options.threads)?;
+    let text = pool.install(|| {
+        let simulation =
+            Simulation::new(case.model.clone()).map_err(|error| case.setup_error(&error))?;
+        Ok::<_, CliError>(if options.resolved {
+            case.resolved.clone()
+        } else {
+            describe(&case, simulation, threads)
+        })
+    })?;
+    console.print(text);
+    Ok(0)
+}
+
+#[expect(clippy::cast_precision_loss, reason = "counts are far below 2^53")]
+fn describe(case: &Case, mut simulation: Simulation, threads: usize) -> String {
+    let reference = simulation.reference();
+    let mut text = format!("{}: {}\n", case.name, case.title);
+    for (body, input) in reference.bodies.iter().zip(&case.model.bodies) {
+        let neighbours = body.gradient.entry_count() as f64 / body.gradient.points().max(1) as f64;
+        let _ = writeln!(
+            text,
+            "  body {:<14} {} particles, {} evaluation points at the {}, {neighbours:.1} neighbours, spacing {:.4e} m, {} ({:.0} m/s)",
+            body.name,
+            body.particles.len(),
+            body.points.len(),
+            if case.model.scheme.quadrature == Quadrature::Bonds {
+                "bonds"
+            } else {
+                "particles"
+            },
+            body.spacing,
+            input.material.name(),
+            body.wave_speed
+        );
+    }
+    for condition in &case.model.conditions {
+        let _ = writeln!(
+            text,
+            "  condition {:<9} {} particles",
+            condition.name,
+            condition.particles.len()
+        );
+    }
+    for obstacle in &case.model.obstacles {
+        let _ = writeln!(
+            text,
+            "  obstacle {:<10} {:?}",
+            obstacle.obstacle.name, obstacle.obstacle.law
+        );
+    }
+    let step = simulation.stable_time_step();
+    let steps = (case.time.end / step).ceil();
+    let (before, started) = (simulation.step_count(), Instant::now());
+    while started.elapsed() < TRIAL && simulation.time() < case.time.end {
+        if let Err(error) = simulation.advance_step(case.time.end) {
+            let _ = writeln!(text, "  warning: the first steps fail: {error}");
+            break;
+        }
+    }
+    let made = (simulation.step_count() - before).max(1) as f64;
+    let each = started.elapsed().as_secs_f64() / made;
+    let _ = writeln!(
+        text,
+        "  time               {} in about {steps:.0} steps of {}",
+        seconds(case.time.end),
+        seconds(step)
+    );
+    let _ = writeln!(
+        text,
+        "  estimate           {} or more with {threads} {} ({:.2e} s per step; compression shortens the steps)",
+        duration(each * steps),
+        if threads == 1 { "thread" } else { "threads" },
+        each
+    );
+    if let Some(memory) = resident_memory() {
+        let _ = writeln!(text, "  memory             {:.0} MB", memory / 1e6);
+    }
+    for warning in &case.warnings {
+        let _ = writeln!(text, "  warning: {warning}");
+    }
+    text
+}
+
+/// Memory of this process in bytes, where the system tells.
+fn resident_memory() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmRSS:"))?;
+    let kilobytes: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(1024.0 * kilobytes)
+}

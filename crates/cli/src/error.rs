@@ -1,0 +1,95 @@
+//! Why the program ends early, and with which exit code.
+
+use std::path::PathBuf;
+
+use jstsph_case::CaseError;
+use jstsph_output::OutputError;
+
+/// Everything that ends the program early.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub(crate) enum CliError {
+    /// The case file is wrong.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// The results folder cannot be used.
+    #[error(transparent)]
+    Folder(OutputError),
+    /// A probe has the name of another column.
+    #[error("probe `{name}` has the name of another column of history.csv; give it another name")]
+    ProbeName {
+        /// The name.
+        name: String,
+    },
+    /// A name that no list or case has.
+    #[error("unknown {what} `{name}`\n = allowed: {}{}", allowed.join(", "), suggestion(name, allowed))]
+    UnknownName {
+        /// What was named.
+        what: &'static str,
+        /// The name.
+        name: String,
+        /// Names there are.
+        allowed: Vec<String>,
+    },
+    /// There is nothing to continue.
+    #[error("{} has no results to continue: {source}; start without --resume", path.display())]
+    NothingToResume {
+        /// Results folder.
+        path: PathBuf,
+        /// Cause.
+        source: OutputError,
+    },
+    /// The saved state belongs to another case.
+    #[error("cannot continue the run in {}: {reason}", path.display())]
+    ForeignState {
+        /// Results folder.
+        path: PathBuf,
+        /// What does not fit.
+        reason: String,
+    },
+    /// Threads cannot be started.
+    #[error("cannot start {threads} threads: {reason}; give a smaller number with --threads")]
+    Threads {
+        /// Number asked for.
+        threads: usize,
+        /// Cause.
+        reason: String,
+    },
+    /// Results can no longer be written.
+    #[error("the run stopped at t = {time:.6e} s: {source}")]
+    Writing {
+        /// Simulated time, s.
+        time: f64,
+        /// Cause.
+        source: OutputError,
+    },
+    /// The simulation broke down; the last good state was written.
+    #[error("the run failed: {reason}\n = the last good state, t = {time:.6e} s, step {step}, is in {}", path.display())]
+    Failed {
+        /// What happened.
+        reason: String,
+        /// Time of the last good state, s.
+        time: f64,
+        /// Its step.
+        step: u64,
+        /// Its restart file.
+        path: PathBuf,
+    },
+}
+
+impl CliError {
+    /// 2 for wrong input, 1 for a run that failed.
+    pub(crate) fn exit_code(&self) -> u8 {
+        match self {
+            Self::Writing { .. } | Self::Failed { .. } => 1,
+            _ => 2,
+        }
+    }
+}
+
+fn suggestion(name: &str, allowed: &[String]) -> String {
+    match jstsph_case::nearest(name, allowed.iter().map(String::as_str)) {
+        Some(near) => format!("\n = did you mean `{near}`?"),
+        None => String::new(),
+    }
+}

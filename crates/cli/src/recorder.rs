@@ -1,0 +1,385 @@
+//! What a run writes while it goes on: history, frames, restart files, summary.
+
+use std::path::PathBuf;
+
+use jstsph_case::{Case, FrameCells, Precision};
+use jstsph_geometry::Cells;
+use jstsph_output::{
+    CellKind, Energies, Extremes, Frame, FrameOptions, FrameSeries, HISTORY_COLUMNS, HistoryRow,
+    HistoryWriter, Lattice, OutputError, ResultsFolder, write_restart,
+};
+use jstsph_solver::{ParticleFields, Saved, Simulation};
+
+use crate::error::CliError;
+use crate::restart::{LastRow, encode};
+
+/// Writes results at the first step at or past each interval.
+pub(crate) struct Recorder<'a> {
+    case: &'a Case,
+    folder: &'a ResultsFolder,
+    history: HistoryWriter,
+    frames: FrameSeries,
+    cells: OwnedCells,
+    next: Next,
+    last: LastRow,
+    /// The state at the last row, which is known to be finite.
+    good: Saved,
+}
+
+/// Simulated times at which something is due, s.
+struct Next {
+    history: f64,
+    frame: f64,
+    restart: f64,
+}
+
+/// Cells of all bodies with indices into the whole simulation.
+enum OwnedCells {
+    None,
+    Quads(Vec<[usize; 4]>),
+    Hexahedra(Vec<[usize; 8]>),
+}
+
+/// Names of the history's columns after the fixed ones.
+///
+/// # Errors
+/// [`CliError::ProbeName`] for a probe whose name is taken.
+pub(crate) fn extra_columns(case: &Case) -> Result<Vec<String>, CliError> {
+    let mut columns: Vec<String> = Vec::new();
+    for quantity in ["momentum", "angular_momentum"] {
+        columns.extend(AXES.map(|axis| format!("{quantity}_{axis}")));
+    }
+    for obstacle in &case.model.obstacles {
+        columns.extend(AXES.map(|axis| format!("force_{}_{axis}", obstacle.obstacle.name)));
+    }
+    for probe in &case.probes {
+        for column in Simulation::probe_columns(probe) {
+            if columns.contains(&column) || HISTORY_COLUMNS.iter().any(|fixed| fixed.name == column)
+            {
+                return Err(CliError::ProbeName {
+                    name: probe.name.clone(),
+                });
+            }
+            columns.push(column);
+        }
+    }
+    Ok(columns)
+}
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+impl<'a> Recorder<'a> {
+    /// Starts the files of a new run with the initial state, or continues those of an earlier one.
+    pub(crate) fn start(
+        case: &'a Case,
+        folder: &'a ResultsFolder,
+        columns: &[String],
+        simulation: &Simulation,
+        resumed: Option<LastRow>,
+    ) -> Result<Self, OutputError> {
+        let time = simulation.time();
+        let cells = match case.output.cells {
+            FrameCells::Lattice => OwnedCells::of(simulation),
+            FrameCells::Particles => OwnedCells::None,
+        };
+        let options = FrameOptions {
+            precision: match case.output.precision {
+                Precision::Double => jstsph_output::Precision::F64,
+                Precision::Single => jstsph_output::Precision::F32,
+            },
+            compression: case.output.compression,
+            cells: if matches!(cells, OwnedCells::None) {
+                CellKind::Vertices
+            } else {
+                CellKind::Lattice
+            },
+        };
+        let (history, frames) = match resumed {
+            None => (
+                HistoryWriter::create(&folder.history(), columns)?,
+                FrameSeries::create(&folder.frames(), options),
+            ),
+            Some(_) => (
+                HistoryWriter::resume(&folder.history(), columns, time)?,
+                FrameSeries::resume(&folder.frames(), options, time)?,
+            ),
+        };
+        let fresh = resumed.is_none();
+        let mut recorder = Self {
+            case,
+            folder,
+            history,
+            frames,
+            cells,
+            next: Next {
+                history: next_multiple(time, case.output.history_interval),
+                frame: next_multiple(time, case.output.frame_interval),
+                restart: next_multiple(time, case.output.restart_interval),
+            },
+            last: resumed.unwrap_or_else(|| LastRow {
+                time,
+                impulses: impulses(simulation),
+            }),
+            good: simulation.save(),
+        };
+        if fresh {
+            let fields = simulation.particle_fields();
+            recorder.row(simulation, &fields)?;
+            recorder.frame(simulation, &fields)?;
+        }
+        Ok(recorder)
+    }
+
+    /// Writes what is due after a step.
+    pub(crate) fn observe(&mut self, simulation: &Simulation) -> Result<(), OutputError> {
+        let time = simulation.time();
+        let (row, frame) = (time >= self.next.history, time >= self.next.frame);
+        if row || frame {
+            let fields = simulation.particle_fields();
+            if row {
+                self.row(simulation, &fields)?;
+                self.good = simulation.save();
+                self.next.history = next_multiple(time, self.case.output.history_interval);
+            }
+            if frame {
+                self.frame(simulation, &fields)?;
+                self.next.frame = next_multiple(time, self.case.output.frame_interval);
+            }
+        }
+        if time >= self.next.restart {
+            self.restart(&simulation.save())?;
+            self.next.restart = next_multiple(time, self.case.output.restart_interval);
+        }
+        Ok(())
+    }
+
+    /// Writes the last row and frame, unless they were just written, and the state.
+    pub(crate) fn finish(&mut self, simulation: &Simulation) -> Result<(), OutputError> {
+        let fields = simulation.particle_fields();
+        if self.last.time < simulation.time() {
+            self.row(simulation, &fields)?;
+        }
+        self.last_frame(simulation, &fields)?;
+        self.restart(&simulation.save())?;
+        Ok(())
+    }
+
+    /// Writes the state as it is, for a run that is to be continued.
+    pub(crate) fn interrupt(&mut self, simulation: &Simulation) -> Result<PathBuf, OutputError> {
+        self.restart(&simulation.save())
+    }
+
+    /// Puts the simulation back to its last good state and writes that.
+    pub(crate) fn fail(&mut self, simulation: &mut Simulation) -> Result<PathBuf, OutputError> {
+        if simulation.restore(&self.good).is_ok() {
+            let fields = simulation.particle_fields();
+            self.last_frame(simulation, &fields)?;
+        }
+        let good = std::mem::replace(&mut self.good, simulation.save());
+        self.restart(&good)
+    }
+
+    fn last_frame(
+        &mut self,
+        simulation: &Simulation,
+        fields: &ParticleFields,
+    ) -> Result<(), OutputError> {
+        match self.frames.last_time() {
+            Some(time) if time >= simulation.time() => Ok(()),
+            _ => self.frame(simulation, fields),
+        }
+    }
+
+    fn restart(&self, saved: &Saved) -> Result<PathBuf, OutputError> {
+        write_restart(
+            &self.folder.restart(),
+            saved.step,
+            &encode(saved, &self.case.resolved, &self.last),
+        )
+    }
+
+    fn row(&mut self, simulation: &Simulation, fields: &ParticleFields) -> Result<(), OutputError> {
+        let momenta = simulation.momenta();
+        let mut extra: Vec<f64> = momenta
+            .linear
+            .iter()
+            .chain(momenta.angular.iter())
+            .copied()
+            .collect();
+        let now = LastRow {
+            time: simulation.time(),
+            impulses: impulses(simulation),
+        };
+        let passed = now.time - self.last.time;
+        for (after, before) in now.impulses.iter().zip(&self.last.impulses) {
+            // The mean force since the last row: the contact of a single particle is a series of
+            // single blows.
+            let force = if passed > 0.0 {
+                (after - before) / passed
+            } else {
+                after - before
+            };
+            extra.extend(force.iter());
+        }
+        extra.extend(
+            probe_values(self.case, simulation, fields)
+                .into_iter()
+                .map(|(_, value)| value),
+        );
+        self.history.append(&HistoryRow {
+            time: now.time,
+            step: simulation.step_count(),
+            dt: simulation.time_step(),
+            energies: energies(simulation),
+            extremes: extremes(simulation, fields),
+            probes: &extra,
+        })?;
+        self.last = now;
+        Ok(())
+    }
+
+    fn frame(
+        &mut self,
+        simulation: &Simulation,
+        fields: &ParticleFields,
+    ) -> Result<(), OutputError> {
+        let state = simulation.state();
+        let mut frame = Frame::new(simulation.time(), simulation.step_count(), &state.position)
+            .scalar("jacobian", &state.jacobian[..])
+            .scalar("determinant", &fields.determinant[..])
+            .scalar("von_mises_stress", &fields.von_mises_stress[..])
+            .scalar("pressure", &fields.pressure[..])
+            .scalar(
+                "equivalent_plastic_strain",
+                &fields.equivalent_plastic_strain[..],
+            )
+            .scalar("wave_speed", &fields.wave_speed[..])
+            .vector("displacement", &fields.displacement[..])
+            .vector("velocity", &fields.velocity[..])
+            .tensor("deformation_gradient", &fields.deformation_gradient[..])
+            .tensor("cauchy_stress", &fields.cauchy_stress[..])
+            .lattice(self.cells.borrowed());
+        let bodies = &simulation.reference().bodies;
+        if bodies.len() > 1 {
+            let mut body = vec![0.0; state.position.len()];
+            for (number, reference) in bodies.iter().enumerate() {
+                #[expect(clippy::cast_precision_loss, reason = "a handful of bodies")]
+                body[reference.particles.clone()].fill(number as f64);
+            }
+            frame = frame.scalar("body", body);
+        }
+        self.frames.write(&frame)?;
+        Ok(())
+    }
+}
+
+impl OwnedCells {
+    fn of(simulation: &Simulation) -> Self {
+        let (mut quads, mut hexes) = (Vec::new(), Vec::new());
+        for body in &simulation.reference().bodies {
+            let first = body.particles.start;
+            match &body.cells {
+                Cells::Quads(cells) => {
+                    quads.extend(cells.iter().map(|cell| cell.map(|a| a as usize + first)))
+                }
+                Cells::Hexes(cells) => {
+                    hexes.extend(cells.iter().map(|cell| cell.map(|a| a as usize + first)))
+                }
+            }
+            if body.cells.is_empty() {
+                return Self::None;
+            }
+        }
+        if hexes.is_empty() {
+            Self::Quads(quads)
+        } else {
+            Self::Hexahedra(hexes)
+        }
+    }
+
+    fn borrowed(&self) -> Lattice<'_> {
+        match self {
+            Self::None => Lattice::None,
+            Self::Quads(cells) => Lattice::Quads(cells),
+            Self::Hexahedra(cells) => Lattice::Hexahedra(cells),
+        }
+    }
+}
+
+/// The first multiple of the interval after a time.
+fn next_multiple(time: f64, interval: f64) -> f64 {
+    let next = ((time / interval).floor() + 1.0) * interval;
+    if next > time { next } else { next + interval }
+}
+
+fn impulses(simulation: &Simulation) -> Vec<jstsph_tensor::Vec3> {
+    simulation
+        .obstacle_impulses()
+        .into_iter()
+        .map(|(_, impulse)| impulse)
+        .collect()
+}
+
+/// Columns and values of all probes.
+pub(crate) fn probe_values(
+    case: &Case,
+    simulation: &Simulation,
+    fields: &ParticleFields,
+) -> Vec<(String, f64)> {
+    case.probes
+        .iter()
+        .flat_map(|probe| {
+            Simulation::probe_columns(probe)
+                .into_iter()
+                .zip(simulation.probe(probe, fields))
+        })
+        .collect()
+}
+
+/// Energies with the balance as a fraction of the largest.
+pub(crate) fn energies(simulation: &Simulation) -> Energies {
+    let energies = simulation.energies();
+    Energies {
+        kinetic: energies.kinetic,
+        elastic: energies.elastic,
+        plastic: energies.plastic,
+        numerical: energies.numerical,
+        hourglass: energies.hourglass,
+        external: energies.external,
+        contact: energies.contact,
+        balance: energies.balance(),
+    }
+}
+
+/// Extremes over the particles.
+pub(crate) fn extremes(simulation: &Simulation, fields: &ParticleFields) -> Extremes {
+    let jacobian = &simulation.state().jacobian;
+    Extremes {
+        equivalent_plastic_strain: fields
+            .equivalent_plastic_strain
+            .iter()
+            .copied()
+            .fold(0.0, f64::max),
+        jacobian_min: jacobian.iter().copied().fold(f64::INFINITY, f64::min),
+        jacobian_max: jacobian.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn multiples_lie_after_the_time_whatever_the_rounding() {
+        assert_eq!(next_multiple(0.0, 0.1), 0.1);
+        assert_eq!(next_multiple(0.05, 0.1), 0.1);
+        for step in 1..1000 {
+            let time = f64::from(step) * 0.1;
+            let next = next_multiple(time, 0.1);
+            assert!(
+                next > time && next <= time + 0.1 * (1.0 + 1e-9),
+                "{time} {next}"
+            );
+        }
+    }
+}

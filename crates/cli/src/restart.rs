@@ -1,0 +1,101 @@
+//! A simulation's state as a restart file and back.
+
+use jstsph_output::{RestartArray, RestartData};
+use jstsph_solver::Saved;
+use jstsph_tensor::Vec3;
+use serde_json::{Value, json};
+
+/// What the recorder must remember beside the state.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct LastRow {
+    /// Time of the last row of the history, s.
+    pub(crate) time: f64,
+    /// Impulse each obstacle had received by then, N s.
+    pub(crate) impulses: Vec<Vec3>,
+}
+
+/// A restart file's contents.
+pub(crate) fn encode(saved: &Saved, resolved: &str, last: &LastRow) -> RestartData {
+    let impulses: Vec<[f64; 3]> = last.impulses.iter().map(|v| [v.x, v.y, v.z]).collect();
+    RestartData {
+        header: json!({
+            "case": resolved,
+            "time": saved.time,
+            "time_step": saved.time_step,
+            "step": saved.step,
+            "synchronised": saved.synchronised,
+            "last_row_time": last.time,
+            "last_row_impulses": impulses,
+        }),
+        arrays: saved
+            .arrays
+            .iter()
+            .map(|(name, values)| RestartArray {
+                name: name.clone(),
+                shape: vec![values.len() as u64],
+                values: values.clone(),
+            })
+            .collect(),
+    }
+}
+
+/// The state, what the recorder remembered, and the resolved case it belongs to; `None` when the
+/// header is not one that [`encode`] writes.
+pub(crate) fn decode(data: RestartData) -> Option<(Saved, LastRow, String)> {
+    let header = &data.header;
+    let number = |name: &str| header.get(name).and_then(Value::as_f64);
+    let impulses = header
+        .get("last_row_impulses")?
+        .as_array()?
+        .iter()
+        .map(|impulse| {
+            let component = |axis: usize| impulse.get(axis).and_then(Value::as_f64);
+            Some(Vec3::new(component(0)?, component(1)?, component(2)?))
+        });
+    let last = LastRow {
+        time: number("last_row_time")?,
+        impulses: impulses.collect::<Option<_>>()?,
+    };
+    let resolved = header.get("case")?.as_str()?.to_owned();
+    let saved = Saved {
+        time: number("time")?,
+        time_step: number("time_step")?,
+        step: header.get("step")?.as_u64()?,
+        synchronised: header.get("synchronised")?.as_bool()?,
+        arrays: data
+            .arrays
+            .into_iter()
+            .map(|array| (array.name, array.values))
+            .collect(),
+    };
+    Some((saved, last, resolved))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_state_survives_the_file_format() {
+        let saved = Saved {
+            time: 0.1 + 0.2,
+            time_step: 1e-300,
+            step: u64::MAX,
+            synchronised: false,
+            arrays: vec![
+                ("position".to_owned(), vec![1.0, -0.0]),
+                ("empty".to_owned(), Vec::new()),
+            ],
+        };
+        let last = LastRow {
+            time: 0.3,
+            impulses: vec![Vec3::new(1.0, 2.0, 3.0)],
+        };
+        let folder = tempfile::tempdir().expect("a folder");
+        jstsph_output::write_restart(folder.path(), 7, &encode(&saved, "text", &last))
+            .expect("written");
+        let (data, warnings) = jstsph_output::read_latest_restart(folder.path()).expect("read");
+        assert!(warnings.is_empty());
+        assert_eq!(decode(data), Some((saved, last, "text".to_owned())));
+    }
+}
