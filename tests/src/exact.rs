@@ -2,9 +2,10 @@
 
 use std::f64::consts::PI;
 
-use jstsph_solver::{Model, Simulation};
+use jstsph_solver::Model;
 use jstsph_tensor::{Mat3, Vec3};
 
+use crate::saved::first_piola_stress;
 use crate::setup;
 
 /// Field of a standing wave in space: a function of the reference position.
@@ -54,56 +55,27 @@ impl StandingWave {
         let speed = self.amplitude * self.frequency * phase.cos();
         let displacement = self.amplitude * phase.sin();
         let reference = simulation.reference();
+        let fields = simulation.particle_fields();
+        let velocity = fields.velocity.iter().zip(&reference.position).map(|(velocity, x)| {
+            let exact = (self.shape)(x) * speed;
+            ((velocity - exact).norm_squared(), exact.norm_squared())
+        });
+        let stresses = first_piola_stress(&simulation);
+        let stress = stresses.iter().zip(&reference.point_position).map(|(stress, x)| {
+            let exact = (self.stress)(x) * displacement;
+            ((stress - exact).norm_squared(), exact.norm_squared())
+        });
         Errors {
-            velocity: relative_error(
-                simulation
-                    .particle_fields()
-                    .velocity
-                    .iter()
-                    .zip(&reference.position)
-                    .map(|(velocity, x)| (*velocity, (self.shape)(x) * speed)),
-                &reference.volume,
-            ),
-            stress: relative_error(
-                first_piola_stress(&simulation)
-                    .into_iter()
-                    .zip(&reference.point_position)
-                    .map(|(stress, x)| (stress, (self.stress)(x) * displacement)),
-                &reference.point_volume,
-            ),
+            velocity: relative_error(velocity, &reference.volume),
+            stress: relative_error(stress, &reference.point_volume),
         }
     }
 }
 
-/// √(Σ V |computed − exact|² / Σ V |exact|²) over pairs (computed, exact).
-fn relative_error<const COLUMNS: usize>(
-    pairs: impl Iterator<Item = (Matrix<COLUMNS>, Matrix<COLUMNS>)>,
-    volumes: &[f64],
-) -> f64 {
-    let (error, size) = pairs.zip(volumes).fold((0.0, 0.0), |(error, size), (pair, volume)| {
-        (
-            error + volume * (pair.0 - pair.1).norm_squared(),
-            size + volume * pair.1.norm_squared(),
-        )
+/// √(Σ V |computed − exact|² / Σ V |exact|²) over squares (|computed − exact|², |exact|²).
+fn relative_error(squares: impl Iterator<Item = (f64, f64)>, volumes: &[f64]) -> f64 {
+    let (error, size) = squares.zip(volumes).fold((0.0, 0.0), |(error, size), (square, volume)| {
+        (error + volume * square.0, size + volume * square.1)
     });
     (error / size).sqrt()
-}
-
-/// First Piola-Kirchhoff stress of every evaluation point, Pa, from the saved state.
-///
-/// # Panics
-/// If the saved state has no stress.
-#[must_use]
-pub fn first_piola_stress(simulation: &Simulation) -> Vec<Mat3> {
-    let saved = simulation.save();
-    let (_, scaled) = saved
-        .arrays
-        .iter()
-        .find(|(name, _)| name == "scaled_stress")
-        .expect("V P is part of a saved state");
-    scaled
-        .chunks_exact(9)
-        .zip(&simulation.reference().point_volume)
-        .map(|(scaled, volume)| Mat3::from_column_slice(scaled) / *volume)
-        .collect()
 }

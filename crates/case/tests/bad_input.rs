@@ -576,3 +576,36 @@ fn rings_need_quadrature_at_the_particles() {
     let case = parse("c", "c.toml", &particles, &[]).expect("valid");
     assert_eq!(case.particles(), 81);
 }
+
+#[test]
+fn no_damaged_text_makes_the_reader_panic() {
+    // Every character left out, doubled, or replaced by a quote or a bracket.
+    let characters: Vec<char> = GOOD.chars().collect();
+    let mut refused = 0;
+    for at in 0..characters.len() {
+        for replacement in [
+            vec![],
+            vec![characters[at]; 2],
+            vec!['"'],
+            vec!['['],
+            vec!['ü'],
+        ] {
+            let mut damaged = characters.clone();
+            damaged.splice(at..=at, replacement);
+            let text: String = damaged.into_iter().collect();
+            // Ten times the particles are slow, not wrong.
+            if text.contains("550]") || text.contains("88, 50") || text.contains("500]") {
+                continue;
+            }
+            if let Err(error) = parse("c", "c.toml", &text, &[]) {
+                assert!(error.to_string().starts_with("c.toml:"), "{error}");
+                refused += 1;
+            }
+        }
+    }
+    assert!(
+        refused > characters.len(),
+        "only {refused} of {} were refused",
+        5 * characters.len()
+    );
+}

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use jstsph_case::{Case, FrameCells, Precision};
-use jstsph_geometry::Cells;
+use jstsph_geometry::{Cells, Dimension};
 use jstsph_output::{
     CellKind, Energies, Extremes, Frame, FrameOptions, FrameSeries, HISTORY_COLUMNS, HistoryRow,
     HistoryWriter, Lattice, OutputError, ResultsFolder, write_restart,
@@ -45,12 +45,16 @@ enum OwnedCells {
 /// # Errors
 /// [`CliError::ProbeName`] for a probe whose name is taken.
 pub(crate) fn extra_columns(case: &Case) -> Result<Vec<String>, CliError> {
-    let mut columns: Vec<String> = Vec::new();
-    for quantity in ["momentum", "angular_momentum"] {
-        columns.extend(AXES.map(|axis| format!("{quantity}_{axis}")));
-    }
+    let (axes, rotations) = axes(case.model.dimension);
+    let named = |quantity: &str, axes: &[usize]| -> Vec<String> {
+        axes.iter()
+            .map(|axis| format!("{quantity}_{}", ["x", "y", "z"][*axis]))
+            .collect()
+    };
+    let mut columns = named("momentum", axes);
+    columns.extend(named("angular_momentum", rotations));
     for obstacle in &case.model.obstacles {
-        columns.extend(AXES.map(|axis| format!("force_{}_{axis}", obstacle.obstacle.name)));
+        columns.extend(named(&format!("force_{}", obstacle.obstacle.name), axes));
     }
     for probe in &case.probes {
         for column in Simulation::probe_columns(probe) {
@@ -66,7 +70,13 @@ pub(crate) fn extra_columns(case: &Case) -> Result<Vec<String>, CliError> {
     Ok(columns)
 }
 
-const AXES: [&str; 3] = ["x", "y", "z"];
+/// Axes along which, and about which, anything can move.
+fn axes(dimension: Dimension) -> (&'static [usize], &'static [usize]) {
+    match dimension {
+        Dimension::PlaneStrain => (&[0, 1], &[2]),
+        Dimension::Solid => (&[0, 1, 2], &[0, 1, 2]),
+    }
+}
 
 impl<'a> Recorder<'a> {
     /// Starts the files of a new run with the initial state, or continues those of an earlier one.
@@ -200,12 +210,9 @@ impl<'a> Recorder<'a> {
 
     fn row(&mut self, simulation: &Simulation, fields: &ParticleFields) -> Result<(), OutputError> {
         let momenta = simulation.momenta();
-        let mut extra: Vec<f64> = momenta
-            .linear
-            .iter()
-            .chain(momenta.angular.iter())
-            .copied()
-            .collect();
+        let (axes, rotations) = axes(self.case.model.dimension);
+        let mut extra: Vec<f64> = axes.iter().map(|axis| momenta.linear[*axis]).collect();
+        extra.extend(rotations.iter().map(|axis| momenta.angular[*axis]));
         let now = LastRow {
             time: simulation.time(),
             impulses: impulses(simulation),
@@ -219,7 +226,7 @@ impl<'a> Recorder<'a> {
             } else {
                 after - before
             };
-            extra.extend(force.iter());
+            extra.extend(axes.iter().map(|axis| force[*axis]));
         }
         extra.extend(
             probe_values(self.case, simulation, fields)
@@ -343,10 +350,11 @@ pub(crate) fn energies(simulation: &Simulation) -> Energies {
         kinetic: energies.kinetic,
         elastic: energies.elastic,
         plastic: energies.plastic,
-        numerical: energies.numerical,
-        hourglass: energies.hourglass,
-        external: energies.external,
-        contact: energies.contact,
+        // Zero may carry a sign, which only puzzles readers.
+        numerical: energies.numerical + 0.0,
+        hourglass: energies.hourglass + 0.0,
+        external: energies.external + 0.0,
+        contact: energies.contact + 0.0,
         balance: energies.balance(),
     }
 }

@@ -79,10 +79,21 @@ pub(crate) fn verdict(summary: &Summary, columns: &[String], folder: &Path) -> S
         extremes.jacobian_max,
         summary.inverted_cells
     );
+    let mut missing = 0;
     for column in columns {
-        if let Some(value) = summary.probes.get(column) {
-            let _ = writeln!(text, "  {column:<18}  {value:.6e}");
+        match summary.probes.get(column) {
+            Some(value) if value.is_nan() => missing += 1,
+            Some(value) => {
+                let _ = writeln!(text, "  {column:<18}  {value:.6e}");
+            }
+            None => {}
         }
+    }
+    if missing > 0 {
+        let _ = writeln!(
+            text,
+            "  {missing} probe values are missing: no particle is near their points"
+        );
     }
     for warning in &summary.warnings {
         let _ = writeln!(text, "  warning: {warning}");

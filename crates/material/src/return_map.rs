@@ -23,7 +23,8 @@ const MAX_ITERATIONS: usize = 100;
 ///
 /// # Arguments
 /// * `trial_stress`: τ_eq,trial, Pa, above J σ_Y(ε_p).
-/// * `flow_stress`: σ_Y and its slope at a given ε_p; the slope may be infinite.
+/// * `start`: σ_Y and its slope at ε_p, which the caller has from testing for yield.
+/// * `flow_stress`: the same at any ε_p; the slope may be infinite.
 ///
 /// # Errors
 /// [`MaterialError::ReturnMap`] if the residual stays above 1e-12 of the trial stress.
@@ -33,6 +34,7 @@ pub(crate) fn plastic_increment(
     shear_modulus: f64,
     jacobian: f64,
     plastic_strain: f64,
+    start: FlowStress,
     flow_stress: impl Fn(f64) -> FlowStress,
 ) -> Result<f64, MaterialError> {
     let stiffness = 3.0 * shear_modulus;
@@ -41,7 +43,11 @@ pub(crate) fn plastic_increment(
     let mut increment = 0.0;
     let mut residual = f64::NAN;
     for iteration in 0..MAX_ITERATIONS {
-        let flow = flow_stress(plastic_strain + increment);
+        let flow = if iteration == 0 {
+            start
+        } else {
+            flow_stress(plastic_strain + increment)
+        };
         residual = trial_stress - stiffness * increment - jacobian * flow.value;
         // The start is no solution however close the trial stress is to yield: it has no increment.
         if residual.abs() <= tolerance && iteration > 0 {
@@ -77,11 +83,11 @@ mod tests {
     #[test]
     fn linear_hardening_has_its_closed_form() {
         let (trial, mu, jacobian, yield_stress, modulus) = (0.9e9, 43e9, 0.97, 0.4e9, 0.1e9);
-        let increment = plastic_increment(trial, mu, jacobian, 0.25, |strain| FlowStress {
+        let law = |strain| FlowStress {
             value: yield_stress + modulus * strain,
             slope: modulus,
-        })
-        .unwrap();
+        };
+        let increment = plastic_increment(trial, mu, jacobian, 0.25, law(0.25), law).unwrap();
         // Greto & Kulasegaram 2019, (A.15), for Kirchhoff stresses.
         let expected =
             (trial - jacobian * (yield_stress + modulus * 0.25)) / (3.0 * mu + jacobian * modulus);
@@ -98,8 +104,9 @@ mod tests {
             };
             for overstress in [10.0, 1.0, 1e-2, 1e-5, 1e-8, 1e-10] {
                 let trial = 0.3e9 * (1.0 + overstress);
+                let flow_stress = |strain| law.flow_stress(strain);
                 let increment =
-                    plastic_increment(trial, 40e9, 1.0, 0.0, |strain| law.flow_stress(strain))
+                    plastic_increment(trial, 40e9, 1.0, 0.0, flow_stress(0.0), flow_stress)
                         .unwrap();
                 let met = trial - 3.0 * 40e9 * increment - law.flow_stress(increment).value;
                 assert!(
@@ -112,11 +119,11 @@ mod tests {
 
     #[test]
     fn a_law_that_never_meets_the_stress_is_reported_with_its_residual() {
-        let error = plastic_increment(1e9, 40e9, 1.0, 0.0, |_| FlowStress {
+        let broken = |_| FlowStress {
             value: f64::NAN,
             slope: 0.0,
-        })
-        .unwrap_err();
+        };
+        let error = plastic_increment(1e9, 40e9, 1.0, 0.0, broken(0.0), broken).unwrap_err();
         assert!(
             matches!(error, MaterialError::ReturnMap { residual, iterations: 100, .. } if residual.is_nan())
         );

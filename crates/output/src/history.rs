@@ -43,7 +43,11 @@ pub const HISTORY_COLUMNS: [HistoryColumn; 14] = [
         "work done on the body by loads and prescribed motion",
     ),
     column("contact_energy", "J", "work done on the body by obstacles"),
-    column("energy_balance", "J", "defect of the energy balance"),
+    column(
+        "energy_balance",
+        "-",
+        "defect of the energy balance over the largest energy",
+    ),
     column(
         "equivalent_plastic_strain",
         "-",
@@ -74,7 +78,8 @@ pub struct HistoryRow<'a> {
     pub energies: Energies,
     /// Extremes over the particles.
     pub extremes: Extremes,
-    /// Values of the probes, in SI units, in the order given when the history was created.
+    /// Values of the probes, in SI units, in the order given when the history was created; NaN
+    /// where a probe has no value, for instance at a point that no particle has reached.
     pub probes: &'a [f64],
 }
 
@@ -129,8 +134,9 @@ impl HistoryWriter {
             x.jacobian_min,
             x.jacobian_max,
         ];
+        let required = values.len();
         values.extend_from_slice(row.probes);
-        self.table.append(&values)
+        self.table.append_with_gaps(&values, required)
     }
 }
 
@@ -200,6 +206,48 @@ mod tests {
         for column in HISTORY_COLUMNS {
             assert!(readme.contains(&format!("`{}`", column.name)), "{column:?}");
         }
+    }
+
+    #[test]
+    fn a_probe_without_a_value_leaves_its_cell_empty_and_survives_a_restart() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("history.csv");
+        let probes = ["section".to_owned(), "length".to_owned()];
+        let row = HistoryRow {
+            time: 0.0,
+            step: 0,
+            dt: 0.0,
+            energies: Energies::default(),
+            extremes: Extremes {
+                equivalent_plastic_strain: 0.0,
+                jacobian_min: 1.0,
+                jacobian_max: 1.0,
+            },
+            probes: &[f64::NAN, 2.0],
+        };
+        let mut history = HistoryWriter::create(&path, &probes).unwrap();
+        history.append(&row).unwrap();
+        let infinite = HistoryRow {
+            probes: &[f64::INFINITY, 2.0],
+            ..row
+        };
+        assert!(matches!(
+            history.append(&infinite),
+            Err(OutputError::NotFinite { .. })
+        ));
+        let broken = HistoryRow {
+            dt: f64::NAN,
+            ..row
+        };
+        assert!(matches!(
+            history.append(&broken),
+            Err(OutputError::NotFinite { .. })
+        ));
+        HistoryWriter::resume(&path, &probes, 0.0).unwrap();
+        let table = read_table(&path).unwrap();
+        assert_eq!(table.rows.len(), 1);
+        assert!(table.column("section").unwrap()[0].is_nan());
+        assert_eq!(table.column("length").unwrap(), [2.0]);
     }
 
     #[test]

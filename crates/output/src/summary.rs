@@ -47,7 +47,8 @@ pub struct Energies {
     /// Work done on the body by obstacles.
     #[serde(deserialize_with = "null_as_nan")]
     pub contact: f64,
-    /// Defect of the energy balance; zero for an exact one.
+    /// Defect of the energy balance as a fraction of the largest energy (not in J); zero for an exact
+    /// balance.
     #[serde(deserialize_with = "null_as_nan")]
     pub balance: f64,
 }

@@ -27,7 +27,7 @@ impl Table {
 
 /// Reads a comma-separated table: a header line of names, then rows of numbers.
 ///
-/// Numbers written by [`TableWriter`] come back bit for bit. Blank lines are skipped.
+/// Numbers written by [`TableWriter`] come back bit for bit, an empty entry as NaN. Blank lines are skipped.
 ///
 /// # Errors
 /// [`OutputError::Io`] and [`OutputError::Table`] with the line and what is wrong with it.
@@ -69,7 +69,11 @@ fn parse_table(path: &Path, text: &str) -> Result<Table, OutputError> {
                 column: column.clone(),
                 text: text.to_owned(),
             };
-            row.push(text.parse().map_err(|_| fail(index + 1, problem()))?);
+            row.push(if text.is_empty() {
+                f64::NAN
+            } else {
+                text.parse().map_err(|_| fail(index + 1, problem()))?
+            });
         }
         rows.push(row);
     }
@@ -158,8 +162,20 @@ impl TableWriter {
     /// [`OutputError::FieldLength`], [`OutputError::NotFinite`] naming the column,
     /// [`OutputError::Io`].
     pub fn append(&mut self, row: &[f64]) -> Result<(), OutputError> {
+        self.append_with_gaps(row, row.len())
+    }
+
+    /// Appends one row whose entries from index `required` on may be NaN, "no value here": such an
+    /// entry is left empty, and [`read_table`] returns it as NaN.
+    ///
+    /// # Errors
+    /// As [`Self::append`]; an infinite entry is refused everywhere.
+    pub fn append_with_gaps(&mut self, row: &[f64], required: usize) -> Result<(), OutputError> {
         require_length("row", row.len(), self.columns.len())?;
         for (index, (column, &value)) in self.columns.iter().zip(row).enumerate() {
+            if index >= required && value.is_nan() {
+                continue;
+            }
             require_finite(column, [value]).map_err(|_| OutputError::NotFinite {
                 field: column.clone(),
                 index,
@@ -174,7 +190,14 @@ impl TableWriter {
 }
 
 fn line(row: &[f64]) -> String {
-    let numbers: Vec<String> = row.iter().map(|&value| shortest(value)).collect();
+    let cell = |value: f64| {
+        if value.is_nan() {
+            String::new()
+        } else {
+            shortest(value)
+        }
+    };
+    let numbers: Vec<String> = row.iter().map(|&value| cell(value)).collect();
     numbers.join(",") + "\n"
 }
 

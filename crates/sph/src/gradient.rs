@@ -335,3 +335,8 @@ fn invert_moment(
 pub(crate) fn pair_lists(positions: &[Vec3], support: &Support) -> Csr {
     neighbours(positions, support.radius())
 }
+
+#[cfg(test)]
+mod summation_by_parts;
+#[cfg(test)]
+mod tests;

@@ -27,6 +27,8 @@ mod interpolation;
 mod kernel;
 mod pairs;
 mod rows;
+#[cfg(test)]
+mod testing;
 
 pub use gradient::{GradientOperator, Support};
 pub use interpolation::interpolate;

@@ -155,3 +155,6 @@ impl PairOperator {
 fn laplacian_scale(support: &Support) -> f64 {
     1.0 / (support.smoothing_length * support.smoothing_length)
 }
+
+#[cfg(test)]
+mod tests;

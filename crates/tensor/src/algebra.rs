@@ -43,12 +43,12 @@ pub fn tensor_cross(a: &Mat3, b: &Mat3) -> Mat3 {
 }
 
 /// A : B = Σ A_ij B_ij.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn double_dot(a: &Mat3, b: &Mat3) -> f64 {
-    let (a, b) = (a.as_slice(), b.as_slice());
-    let column = |i: usize| a[i] * b[i] + a[i + 1] * b[i + 1] + a[i + 2] * b[i + 2];
-    column(0) + column(3) + column(6)
+    (a.m11 * b.m11 + a.m21 * b.m21 + a.m31 * b.m31)
+        + (a.m12 * b.m12 + a.m22 * b.m22 + a.m32 * b.m32)
+        + (a.m13 * b.m13 + a.m23 * b.m23 + a.m33 * b.m33)
 }
 
 /// A : A, the squared Frobenius norm.

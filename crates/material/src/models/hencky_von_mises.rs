@@ -156,6 +156,7 @@ impl Material for HenckyVonMises {
             mu,
             now.jacobian,
             old.equivalent_plastic_strain,
+            flow_stress,
             |strain| self.hardening.flow_stress(strain),
         )?;
         let equivalent_stress = trial_equivalent_stress - 3.0 * mu * increment;

@@ -1,0 +1,118 @@
+//! Cost of the two passes of a step, gradient (per evaluation point) and divergence (per particle).
+
+use std::hint::black_box;
+
+use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
+use jstsph_geometry::{Axis, Body, Dimension, Lattice, Shape, Spacing, build_body};
+use jstsph_sph::{GradientOperator, Kernel, Support};
+use jstsph_tensor::{Mat3, Vec3};
+
+/// The billet of equal channel angular extrusion, 8 × 50 nodes in plane strain.
+fn billet() -> Body {
+    let shape = Shape::Box {
+        min: Vec3::zeros(),
+        max: Vec3::new(8e-3, 56e-3, 0.0),
+    };
+    let spacing = Spacing::Counts([8, 50, 1]);
+    build_body(shape, Lattice::Cubic { spacing }, Dimension::PlaneStrain)
+        .expect("a billet has nodes")
+}
+
+/// The Taylor bar, 4131 nodes.
+fn bar() -> Body {
+    let shape = Shape::Cylinder {
+        base: Vec3::zeros(),
+        axis: Axis::Z,
+        radius: 3.2e-3,
+        height: 32e-3,
+    };
+    let spacing = Spacing::Radial {
+        per_radius: 5,
+        layers: 51,
+    };
+    build_body(shape, Lattice::Cubic { spacing }, Dimension::Solid).expect("a bar has nodes")
+}
+
+fn support(body: &Body, ratio: f64) -> Support {
+    Support {
+        kernel: Kernel::QuinticSpline,
+        smoothing_length: ratio * body.spacing,
+        dimension: body.dimension.count(),
+    }
+}
+
+fn at_particles(body: &Body) -> GradientOperator {
+    GradientOperator::at_particles(&body.positions, &body.weights, &support(body, 1.2))
+        .expect("lattices have neighbours")
+}
+
+fn at_bonds(body: &Body) -> GradientOperator {
+    let bonds = body.bonds.as_ref().expect("cubic lattices have bonds");
+    GradientOperator::at_points(&bonds.midpoints, &body.positions, &support(body, 0.8))
+        .expect("lattices have neighbours")
+}
+
+fn passes(c: &mut Criterion) {
+    let (billet, bar) = (billet(), bar());
+    let cases = [
+        ("billet_400_bonds", at_bonds(&billet)),
+        ("bar_4131_particles", at_particles(&bar)),
+        ("bar_4131_bonds", at_bonds(&bar)),
+    ];
+    let mut gradients = c.benchmark_group("gradient");
+    for (name, operator) in &cases {
+        gradient(&mut gradients, name, operator);
+    }
+    gradients.finish();
+    let mut divergences = c.benchmark_group("divergence");
+    for (name, operator) in &cases {
+        divergence(&mut divergences, name, operator);
+    }
+    divergences.finish();
+}
+
+type Group<'a> = BenchmarkGroup<'a, criterion::measurement::WallTime>;
+
+fn gradient(group: &mut Group<'_>, name: &str, operator: &GradientOperator) {
+    let field: Vec<Vec3> = (0..operator.particles())
+        .map(|a| Vec3::new((a as f64).sin(), (a as f64).cos(), 0.1))
+        .collect();
+    let mut gradients = vec![Mat3::zeros(); operator.points()];
+    group.throughput(Throughput::Elements(operator.points() as u64));
+    group.bench_function(name, |b| {
+        b.iter(|| {
+            for (q, gradient) in gradients.iter_mut().enumerate() {
+                *gradient = operator.gradient_at(q, black_box(&field));
+            }
+            black_box(gradients.last().copied())
+        });
+    });
+}
+
+fn divergence(group: &mut Group<'_>, name: &str, operator: &GradientOperator) {
+    let stresses: Vec<Mat3> = (0..operator.points())
+        .map(|q| Mat3::from_element((q as f64).sin()))
+        .collect();
+    let mut forces = vec![Vec3::zeros(); operator.particles()];
+    group.throughput(Throughput::Elements(operator.points() as u64));
+    group.bench_function(name, |b| {
+        b.iter(|| {
+            for (c, force) in forces.iter_mut().enumerate() {
+                *force = operator.divergence_at(c, black_box(&stresses));
+            }
+            black_box(forces.last().copied())
+        });
+    });
+}
+
+fn setup(c: &mut Criterion) {
+    let bar = bar();
+    let mut group = c.benchmark_group("build");
+    group.sample_size(10);
+    group.bench_function("bar_4131_particles", |b| b.iter(|| at_particles(black_box(&bar))));
+    group.bench_function("bar_4131_bonds", |b| b.iter(|| at_bonds(black_box(&bar))));
+    group.finish();
+}
+
+criterion_group!(benches, passes, setup);
+criterion_main!(benches);

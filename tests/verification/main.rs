@@ -1,0 +1,7 @@
+//! Does the scheme solve the equations? Observed orders of convergence against exact solutions.
+
+mod longitudinal_wave;
+mod patch;
+mod swinging_cube;
+mod swinging_plate;
+mod time_order;
