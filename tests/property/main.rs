@@ -1,1 +1,7 @@
-#[test] fn x(){}
+//! What must hold whatever the resolution: conservation, symmetry, invariance, determinism.
+
+mod conservation;
+mod determinism;
+mod energy_balance;
+mod invariance;
+mod tumbling;

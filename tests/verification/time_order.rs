@@ -6,20 +6,23 @@
 use std::f64::consts::PI;
 
 use jstsph_geometry::Dimension;
-use jstsph_solver::{Integrator, Model, Scheme, State};
-use jstsph_tensor::Vec3;
-use jstsph_tests::{Study, setup};
+use jstsph_material::MaterialSpec;
+use jstsph_solver::{Integrator, Model, Scheme, Simulation, Stabilisation};
+use jstsph_tensor::{Mat3, Vec3};
+use jstsph_tests::{Study, saved, setup};
 
-const UNKNOWNS: [&str; 5] = ["p", "F", "H", "J", "x"];
+/// Columns of the tables; the last one is zero for elastic materials.
+const UNKNOWNS: [&str; 6] = ["p", "F", "H", "J", "x", "eps_p"];
+const ELASTIC_UNKNOWNS: [&str; 5] = ["p", "F", "H", "J", "x"];
 
 /// Courant numbers are one over these.
 const REFINEMENTS: [usize; 3] = [4, 8, 16];
-const REFERENCE: usize = 128;
+const REFERENCE: usize = 256;
 
 /// Speed over the pressure wave speed: of the order of the strains that follow.
 const SPEED: f64 = 0.1;
 
-fn model(dimension: Dimension, material: jstsph_material::MaterialSpec, scheme: Scheme) -> Model {
+fn model(dimension: Dimension, material: MaterialSpec, scheme: Scheme) -> Model {
     let intervals = match dimension {
         Dimension::PlaneStrain => [8, 6, 1],
         Dimension::Solid => [5, 4, 4],
@@ -38,78 +41,115 @@ fn model(dimension: Dimension, material: jstsph_material::MaterialSpec, scheme: 
     )
 }
 
-/// Free vibration until pressure waves have crossed the body once.
-fn state_at_end(dimension: Dimension, scheme: Scheme) -> State {
-    let material = setup::rubber(0.3);
+/// A run until pressure waves have crossed the body once.
+fn run(dimension: Dimension, material: &MaterialSpec, scheme: Scheme) -> Simulation {
     let end = 1.0 / material.wave_speeds().pressure;
-    setup::run(model(dimension, material, scheme), end).state().clone()
+    setup::run(model(dimension, material.clone(), scheme), end)
 }
 
-fn distance(now: &State, reference: &State) -> Vec<f64> {
-    fn root_mean_square(squares: impl Iterator<Item = f64>) -> f64 {
-        let (sum, count) = squares.fold((0.0, 0.0), |(sum, count), x| (sum + x, count + 1.0));
-        f64::sqrt(sum / count)
+/// Root mean square of the differences of two lists, given their squares.
+fn root_mean_square(squares: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = squares.fold((0.0, 0.0), |(sum, count), x| (sum + x, count + 1.0));
+    f64::sqrt(sum / count)
+}
+
+/// One difference per entry of [`UNKNOWNS`].
+fn differences(now: &Simulation, reference: &Simulation) -> Vec<f64> {
+    fn tensors(a: &[Mat3], b: &[Mat3]) -> f64 {
+        root_mean_square(a.iter().zip(b).map(|(a, b)| (a - b).norm_squared()))
     }
+    fn vectors(a: &[Vec3], b: &[Vec3]) -> f64 {
+        root_mean_square(a.iter().zip(b).map(|(a, b)| (a - b).norm_squared()))
+    }
+    let (a, b) = (now.state(), reference.state());
+    let strain = |simulation| {
+        saved::plastic_history(simulation).into_iter().map(|h| h.equivalent_plastic_strain)
+    };
     vec![
-        root_mean_square(
-            now.momentum.iter().zip(&reference.momentum).map(|(a, b)| (a - b).norm_squared()),
-        ),
-        root_mean_square(
-            now.deformation_gradient
-                .iter()
-                .zip(&reference.deformation_gradient)
-                .map(|(a, b)| (a - b).norm_squared()),
-        ),
-        root_mean_square(
-            now.cofactor.iter().zip(&reference.cofactor).map(|(a, b)| (a - b).norm_squared()),
-        ),
-        root_mean_square(
-            now.jacobian.iter().zip(&reference.jacobian).map(|(a, b)| (a - b) * (a - b)),
-        ),
-        root_mean_square(
-            now.position.iter().zip(&reference.position).map(|(a, b)| (a - b).norm_squared()),
-        ),
+        vectors(&a.momentum, &b.momentum),
+        tensors(&a.deformation_gradient, &b.deformation_gradient),
+        tensors(&a.cofactor, &b.cofactor),
+        root_mean_square(a.jacobian.iter().zip(&b.jacobian).map(|(a, b)| (a - b) * (a - b))),
+        vectors(&a.position, &b.position),
+        root_mean_square(strain(now).zip(strain(reference)).map(|(a, b)| (a - b) * (a - b))),
     ]
 }
 
-fn study(name: &str, dimension: Dimension, scheme: Scheme) -> Study {
+fn study(name: &str, dimension: Dimension, material: &MaterialSpec, scheme: Scheme) -> Study {
     let at = |refinement: usize| {
-        state_at_end(dimension, Scheme { cfl: 1.0 / refinement as f64, ..scheme })
+        run(dimension, material, Scheme { cfl: 1.0 / refinement as f64, ..scheme })
     };
     let reference = at(REFERENCE);
+    let title = format!("time step, {name}, {dimension}, {:?}", scheme.integrator);
     let study =
-        Study::over(format!("time step, {name}, {dimension}"), &UNKNOWNS, &REFINEMENTS, |n| {
-            distance(&at(n), &reference)
-        });
+        Study::over(title, &UNKNOWNS, &REFINEMENTS, |n| differences(&at(n), &reference));
     study.show();
     study
 }
 
-fn undamped(scheme: Scheme) -> Scheme {
-    Scheme { stabilisation: Default::default(), ..scheme }
+fn schemes(integrator: Integrator) -> [(&'static str, Scheme); 2] {
+    [
+        ("particles", Scheme { integrator, ..setup::particles(0.9) }),
+        ("bonds", Scheme { integrator, ..setup::bonds(0.8) }),
+    ]
 }
 
+const INTEGRATORS: [Integrator; 2] = [Integrator::Leapfrog, Integrator::TvdRungeKutta];
+
+/// (3.16) and the leapfrog: measured 1.98 to 2.07 for every unknown.
 #[test]
-fn measure() {
-    let material = setup::copper();
-    for (name, scheme) in [("particles", setup::particles(0.9)), ("bonds", setup::bonds(0.8))] {
-        for integrator in [Integrator::Leapfrog, Integrator::TvdRungeKutta] {
-            let end = 1.0 / material.wave_speeds().pressure;
-            let at = |r: usize| {
-                let m = model(Dimension::PlaneStrain, material.clone(), Scheme { integrator, cfl: 1.0 / r as f64, ..undamped(scheme) });
-                let s = setup::run(m, end);
-                let e: Vec<f64> = jstsph_tests::saved::plastic_history(&s).iter().map(|h| h.equivalent_plastic_strain).collect();
-                (s.state().clone(), e, s.energies().balance())
-            };
-            let r = at(256);
-            let mut q = UNKNOWNS.to_vec(); q.push("eps"); q.push("balance");
-            Study::over(format!("plastic {name} {integrator:?} max eps {:?}", r.1.iter().fold(0.0f64, |a, b| a.max(*b))), &q, &[4, 8, 16, 32], |n| {
-                let n = at(n);
-                let mut d = distance(&n.0, &r.0);
-                d.push((n.1.iter().zip(&r.1).map(|(a, b)| (a-b)*(a-b)).sum::<f64>() / r.1.len() as f64).sqrt());
-                d.push(n.2.abs());
-                d
-            }).show();
+fn elastic_vibration_is_second_order_in_every_unknown() {
+    for dimension in [Dimension::PlaneStrain, Dimension::Solid] {
+        for integrator in INTEGRATORS {
+            for (name, scheme) in schemes(integrator) {
+                let scheme = Scheme { stabilisation: Stabilisation::default(), ..scheme };
+                let study = study(name, dimension, &setup::rubber(0.3), scheme);
+                for unknown in ELASTIC_UNKNOWNS {
+                    study.assert_order(unknown, 1.9..2.15);
+                }
+            }
+        }
+    }
+}
+
+/// Dissipation is part of R(u) in both stages: measured 1.99 to 2.06.
+#[test]
+fn runge_kutta_is_second_order_with_dissipation() {
+    for (name, scheme) in schemes(Integrator::TvdRungeKutta) {
+        let scheme = Scheme { stabilisation: setup::particles(0.9).stabilisation, ..scheme };
+        let study = study(name, Dimension::PlaneStrain, &setup::rubber(0.3), scheme);
+        for unknown in ELASTIC_UNKNOWNS {
+            study.assert_order(unknown, 1.9..2.15);
+        }
+    }
+}
+
+/// Known limitation: the leapfrog evaluates the dissipation with the momentum of half a step
+/// before, which is first order in the (small) dissipative part. Measured 1.2 to 1.3 on the way
+/// down to 1; the error at a Courant number of 1/16 is four times that without dissipation.
+#[test]
+fn leapfrog_takes_the_dissipation_half_a_step_late() {
+    for (name, scheme) in schemes(Integrator::Leapfrog) {
+        let scheme = Scheme { stabilisation: setup::particles(0.9).stabilisation, ..scheme };
+        let study = study(name, Dimension::PlaneStrain, &setup::rubber(0.3), scheme);
+        for unknown in ELASTIC_UNKNOWNS {
+            study.assert_order(unknown, 1.0..1.6);
+        }
+    }
+}
+
+/// The return map is backward Euler: first order in the plastic strain increments, hence in
+/// everything that follows from them; measured 0.9 to 1.8, falling to 1.
+#[test]
+fn plastic_flow_is_first_order() {
+    for integrator in INTEGRATORS {
+        for (name, scheme) in schemes(integrator) {
+            let scheme = Scheme { stabilisation: Stabilisation::default(), ..scheme };
+            let study = study(name, Dimension::PlaneStrain, &setup::copper(), scheme);
+            for unknown in UNKNOWNS {
+                study.assert_order(unknown, 0.8..2.2);
+            }
+            study.assert_finest_error("eps_p", 1e-4);
         }
     }
 }

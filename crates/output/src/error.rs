@@ -95,6 +95,15 @@ pub enum OutputError {
         line: usize,
     },
 
+    /// A frame cannot be read.
+    #[error("cannot read {}: {problem}", path.display())]
+    Frame {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: FrameProblem,
+    },
+
     /// A JSON file cannot be understood.
     #[error("cannot understand {}: {source}", path.display())]
     Json {
@@ -160,6 +169,40 @@ pub enum OutputError {
         index: usize,
         /// The value.
         value: f64,
+    },
+}
+
+/// What is wrong with a frame.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FrameProblem {
+    /// Something that every frame of ours has is not there.
+    #[error("it has no {element}: not a frame written by jstsph")]
+    Missing {
+        /// What is missing.
+        element: String,
+    },
+    /// The bytes of an array are not what the description says.
+    #[error("array `{array}` is cut off or damaged; the file cannot be used")]
+    Damaged {
+        /// Name of the array.
+        array: String,
+    },
+    /// An array has another number of entries than there are particles.
+    #[error("array `{array}` has {found} numbers, expected {expected}")]
+    Length {
+        /// Name of the array.
+        array: String,
+        /// Numbers found.
+        found: usize,
+        /// Numbers expected.
+        expected: usize,
+    },
+    /// An array has a type, or a number of components, that we do not write.
+    #[error("array `{array}` has a type that jstsph does not write")]
+    Kind {
+        /// Name of the array.
+        array: String,
     },
 }
 

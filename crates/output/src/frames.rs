@@ -3,7 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::vtu::escape_xml;
+use crate::stored::attribute;
+use crate::vtu::{escape_xml, unescape_xml};
 use crate::{Frame, FrameOptions, OutputError, atomic_write, write_vtu};
 
 /// Name of the collection inside the frames folder.
@@ -52,6 +53,14 @@ impl Collection {
         Ok(collection)
     }
 
+    /// Reads the whole collection at `path`; empty if there is no file.
+    ///
+    /// # Errors
+    /// Those of [`Self::resume`].
+    pub fn read(path: &Path) -> Result<Self, OutputError> {
+        Self::resume(path, f64::INFINITY)
+    }
+
     /// Times (s) and files, relative to the collection, in the order they were added.
     pub fn entries(&self) -> &[(f64, String)] {
         &self.entries
@@ -85,17 +94,8 @@ impl Collection {
 }
 
 fn parse_entry(line: &str) -> Option<(f64, String)> {
-    let attribute = |name: &str| {
-        let (_, rest) = line.split_once(&format!(" {name}=\""))?;
-        rest.split_once('"').map(|(value, _)| value)
-    };
-    let time = attribute("timestep")?.parse().ok()?;
-    let file = attribute("file")?
-        .replace("&lt;", "<")
-        .replace("&gt;", ">")
-        .replace("&quot;", "\"")
-        .replace("&amp;", "&");
-    Some((time, file))
+    let time = attribute(line, "timestep")?.parse().ok()?;
+    Some((time, unescape_xml(attribute(line, "file")?)))
 }
 
 /// Writes `frame_000000.vtu`, `frame_000001.vtu`, ... and their collection `frames.pvd`.
@@ -168,7 +168,7 @@ mod tests {
         for (i, time) in [0.0, 0.1 + 0.2, 1e-300].into_iter().enumerate() {
             collection.add(time, &format!("a&b_{i}.vtu")).unwrap();
         }
-        assert_eq!(Collection::resume(&path, 1.0).unwrap(), collection);
+        assert_eq!(Collection::read(&path).unwrap(), collection);
         let resumed = Collection::resume(&path, 0.3).unwrap();
         assert_eq!(
             resumed.entries(),

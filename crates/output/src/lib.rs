@@ -43,13 +43,14 @@ mod json;
 pub mod plot;
 mod record;
 mod restart;
+mod stored;
 mod summary;
 mod table;
 mod vtu;
 
 pub use atomic::atomic_write;
 pub use clock::iso8601;
-pub use error::{OutputError, TableProblem};
+pub use error::{FrameProblem, OutputError, TableProblem};
 pub use folder::ResultsFolder;
 pub use frame::{Field, Frame, Lattice};
 pub use frames::{Collection, FrameSeries};
@@ -58,6 +59,7 @@ pub use record::{Machine, RunRecord};
 pub use restart::{
     RestartArray, RestartData, RestartProblem, RestartWarning, read_latest_restart, write_restart,
 };
+pub use stored::{StoredCells, StoredFrame, read_vtu};
 pub use summary::{Energies, Extremes, Status, Summary};
 pub use table::{Table, TableWriter, read_table};
 pub use vtu::{CellKind, FrameOptions, Precision, write_vtu};

@@ -280,6 +280,14 @@ pub(crate) fn escape_xml(text: &str) -> String {
     escaped
 }
 
+/// Undoes [`escape_xml`].
+pub(crate) fn unescape_xml(text: &str) -> String {
+    text.replace("&lt;", "<")
+        .replace("&gt;", ">")
+        .replace("&quot;", "\"")
+        .replace("&amp;", "&")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -109,7 +109,9 @@ fn setup(c: &mut Criterion) {
     let bar = bar();
     let mut group = c.benchmark_group("build");
     group.sample_size(10);
-    group.bench_function("bar_4131_particles", |b| b.iter(|| at_particles(black_box(&bar))));
+    group.bench_function("bar_4131_particles", |b| {
+        b.iter(|| at_particles(black_box(&bar)))
+    });
     group.bench_function("bar_4131_bonds", |b| b.iter(|| at_bonds(black_box(&bar))));
     group.finish();
 }
