@@ -16,14 +16,19 @@ fn momentum_scales(simulation: &Simulation) -> (f64, f64) {
     let (state, volume) = (simulation.state(), &simulation.reference().volume);
     let particles = state.momentum.iter().zip(&state.position).zip(volume);
     particles.fold((0.0, 0.0), |(linear, angular), ((p, x), volume)| {
-        (linear + volume * p.norm(), angular + volume * p.norm() * x.norm())
+        (
+            linear + volume * p.norm(),
+            angular + volume * p.norm() * x.norm(),
+        )
     })
 }
 
 fn largest_plastic_strain(simulation: &Simulation) -> f64 {
     saved::plastic_history(simulation)
         .iter()
-        .fold(0.0, |largest, history| largest.max(history.equivalent_plastic_strain))
+        .fold(0.0, |largest, history| {
+            largest.max(history.equivalent_plastic_strain)
+        })
 }
 
 /// Largest difference between F and the discrete gradient of x.
@@ -32,10 +37,14 @@ fn incompatibility(simulation: &Simulation) -> f64 {
     let state = simulation.state();
     let plane = simulation.reference().dimension == Dimension::PlaneStrain;
     let out_of_plane = Mat3::from_diagonal(&Vec3::new(0.0, 0.0, f64::from(u8::from(plane))));
-    state.deformation_gradient.iter().enumerate().fold(0.0, |largest, (q, f)| {
-        let gradient = body.gradient.gradient_at(q, &state.position) + out_of_plane;
-        largest.max((f - gradient).norm())
-    })
+    state
+        .deformation_gradient
+        .iter()
+        .enumerate()
+        .fold(0.0, |largest, (q, f)| {
+            let gradient = body.gradient.gradient_at(q, &state.position) + out_of_plane;
+            largest.max((f - gradient).norm())
+        })
 }
 
 #[test]
@@ -49,13 +58,25 @@ fn free_yielding_body_keeps_its_momenta_and_its_compatibility() {
             let (linear, angular) = momentum_scales(&simulation);
 
             let name = format!("{name}, {dimension}");
-            assert!(largest_plastic_strain(&simulation) > 0.02, "{name}: the body must yield");
+            assert!(
+                largest_plastic_strain(&simulation) > 0.02,
+                "{name}: the body must yield"
+            );
             let linear = (after.linear - before.linear).norm() / linear;
             let angular = (after.angular - before.angular).norm() / angular;
             let incompatibility = incompatibility(&simulation);
-            assert!(linear < 1e-12, "{name}: linear momentum drifts by {linear:.2e}");
-            assert!(angular < 1e-12, "{name}: angular momentum drifts by {angular:.2e}");
-            assert!(incompatibility < 1e-12, "{name}: F is off grad x by {incompatibility:.2e}");
+            assert!(
+                linear < 1e-12,
+                "{name}: linear momentum drifts by {linear:.2e}"
+            );
+            assert!(
+                angular < 1e-12,
+                "{name}: angular momentum drifts by {angular:.2e}"
+            );
+            assert!(
+                incompatibility < 1e-12,
+                "{name}: F is off grad x by {incompatibility:.2e}"
+            );
         }
     }
 }
@@ -63,7 +84,10 @@ fn free_yielding_body_keeps_its_momenta_and_its_compatibility() {
 /// The counterexample that shows what the projection is for: nodal stresses exert a torque.
 #[test]
 fn particles_without_projection_lose_angular_momentum() {
-    let scheme = Scheme { projection: false, ..setup::particles(0.9) };
+    let scheme = Scheme {
+        projection: false,
+        ..setup::particles(0.9)
+    };
     let mut simulation = setup::start(tumbling::model(Dimension::PlaneStrain, scheme));
     let before = simulation.momenta();
     setup::advance_steps(&mut simulation, STEPS);
@@ -83,7 +107,10 @@ fn plastic_flow_preserves_volume() {
             for history in saved::plastic_history(&simulation) {
                 let determinant = history.inverse_plastic_cauchy_green().determinant();
                 // Round-off of one step times the square root of their number, ample.
-                assert!((determinant - 1.0).abs() < 1e-12, "{name}: det C_p⁻¹ = {determinant}");
+                assert!(
+                    (determinant - 1.0).abs() < 1e-12,
+                    "{name}: det C_p⁻¹ = {determinant}"
+                );
             }
         }
     }
@@ -102,13 +129,34 @@ fn jacobian_of_the_particles_is_the_determinant() {
             pairs.fold(0.0f64, |largest, (j, det)| largest.max((j - det).abs()))
         };
         let leapfrog = off(setup::particles(0.9), STEPS);
-        assert!(leapfrog < 1e-12, "{dimension}: leapfrog, J is off det F by {leapfrog:.2e}");
+        assert!(
+            leapfrog < 1e-12,
+            "{dimension}: leapfrog, J is off det F by {leapfrog:.2e}"
+        );
 
-        let runge_kutta = Scheme { integrator: Integrator::TvdRungeKutta, ..setup::particles(0.9) };
-        let coarse = off(Scheme { cfl: 0.2, ..runge_kutta }, STEPS / 4);
-        let fine = off(Scheme { cfl: 0.1, ..runge_kutta }, STEPS / 2);
+        let runge_kutta = Scheme {
+            integrator: Integrator::TvdRungeKutta,
+            ..setup::particles(0.9)
+        };
+        let coarse = off(
+            Scheme {
+                cfl: 0.2,
+                ..runge_kutta
+            },
+            STEPS / 4,
+        );
+        let fine = off(
+            Scheme {
+                cfl: 0.1,
+                ..runge_kutta
+            },
+            STEPS / 2,
+        );
         let order = jstsph_tests::observed_order((1.0, coarse), (2.0, fine));
-        assert!(order > 1.8, "{dimension}: TVD-RK2, {coarse:.2e} and {fine:.2e}: order {order:.2}");
+        assert!(
+            order > 1.8,
+            "{dimension}: TVD-RK2, {coarse:.2e} and {fine:.2e}: order {order:.2}"
+        );
     }
 }
 
@@ -127,11 +175,17 @@ fn symmetric_problem_stays_symmetric() {
         let model = setup::free_body(body, setup::copper(), velocity, scheme);
         let mut simulation = setup::start(model);
         setup::advance_steps(&mut simulation, STEPS);
-        assert!(largest_plastic_strain(&simulation) > 0.02, "{name}: the body must yield");
+        assert!(
+            largest_plastic_strain(&simulation) > 0.02,
+            "{name}: the body must yield"
+        );
 
         let node = |x: Vec3| {
             let spacing = size[0] / intervals[0] as f64;
-            positions.iter().position(|y| (y - x).norm() < 0.1 * spacing).expect("a mirror image")
+            positions
+                .iter()
+                .position(|y| (y - x).norm() < 0.1 * spacing)
+                .expect("a mirror image")
         };
         let mut worst = 0.0f64;
         for (a, x) in positions.iter().enumerate() {

@@ -4,9 +4,7 @@ use std::sync::Arc;
 
 use jstsph_contact::{Law, Obstacle, Surface};
 use jstsph_geometry::{Dimension, Selection, face_areas, select};
-use jstsph_solver::{
-    Condition, ConditionKind, Model, ModelObstacle, Scheme, Signal,
-};
+use jstsph_solver::{Condition, ConditionKind, Model, ModelObstacle, Scheme, Signal};
 use jstsph_tensor::Vec3;
 use jstsph_tests::{Study, setup};
 
@@ -34,18 +32,30 @@ fn schemes(hourglass: bool) -> impl Iterator<Item = (&'static str, Scheme)> {
 fn rubber_plate(scheme: Scheme) -> Model {
     let velocity = tumbling::velocity(Dimension::PlaneStrain);
     let slow = move |x: &Vec3| velocity(x) * 0.01;
-    setup::free_body(tumbling::body(Dimension::PlaneStrain), setup::rubber(0.3), slow, scheme)
+    setup::free_body(
+        tumbling::body(Dimension::PlaneStrain),
+        setup::rubber(0.3),
+        slow,
+        scheme,
+    )
 }
 
 /// A copper block that hits a wall at 100 m/s, sliding along it.
 fn impact(scheme: Scheme) -> Model {
     let body = setup::block([0.1, 0.08, 0.0], [10, 8, 1], Dimension::PlaneStrain);
-    let mut model =
-        setup::free_body(body, setup::copper(), |_| Vec3::new(20.0, -100.0, 0.0), scheme);
+    let mut model = setup::free_body(
+        body,
+        setup::copper(),
+        |_| Vec3::new(20.0, -100.0, 0.0),
+        scheme,
+    );
     model.obstacles.push(ModelObstacle {
         obstacle: Obstacle {
             name: "wall".into(),
-            surface: Surface::Plane { point: Vec3::new(0.0, -0.001, 0.0), normal: Vec3::y() },
+            surface: Surface::Plane {
+                point: Vec3::new(0.0, -0.001, 0.0),
+                normal: Vec3::y(),
+            },
             law: Law::Inelastic { restitution: 0.0 },
         },
         velocity: None,
@@ -61,7 +71,9 @@ fn loaded(scheme: Scheme) -> Model {
     let areas = face_areas(body, "right").expect("a box has areas");
     let shaken = select(body, &Selection::Face("left".into())).expect("a face");
     let shake = move |amplitude: f64| {
-        Some(Signal::Function(Arc::new(move |t, _: &Vec3| amplitude * (frequency * t).sin())))
+        Some(Signal::Function(Arc::new(move |t, _: &Vec3| {
+            amplitude * (frequency * t).sin()
+        })))
     };
     model.conditions = vec![
         Condition {

@@ -45,7 +45,11 @@ fn model_in(units: Units, scheme: Scheme) -> Model {
             modulus: 0.1e9 * units.pressure(),
         }),
     });
-    let body = setup::block([0.1, 0.08, 0.08].map(|l| l * length), [5, 4, 4], Dimension::Solid);
+    let body = setup::block(
+        [0.1, 0.08, 0.08].map(|l| l * length),
+        [5, 4, 4],
+        Dimension::Solid,
+    );
     let areas = face_areas(&body, "right").expect("a box has areas");
     let velocity = |x: &Vec3| {
         let x = x / length;
@@ -78,17 +82,35 @@ fn model_in(units: Units, scheme: Scheme) -> Model {
 /// Largest difference of two positions, given how to get from one frame to the other.
 fn largest_difference(a: &[Vec3], b: &[Vec3], into_a: impl Fn(usize) -> Vec3) -> f64 {
     debug_assert_eq!(a.len(), b.len());
-    a.iter().enumerate().fold(0.0, |largest, (i, x)| largest.max((x - into_a(i)).norm()))
+    a.iter()
+        .enumerate()
+        .fold(0.0, |largest, (i, x)| largest.max((x - into_a(i)).norm()))
 }
 
 /// Finds any hidden unit and any absolute tolerance. Factors that are no powers of two change
 /// every rounding; plastic flow amplifies that to 1e-12 or so within 200 steps.
 #[test]
 fn results_scale_with_the_units() {
-    let foot_pound_minute = Units { length: 3.280_839_9, mass: 2.204_622_6, time: 1.0 / 60.0 };
-    let micro = Units { length: 1.1e6, mass: 1.7e9, time: 1.3e6 };
-    let kilo = Units { length: 0.7e-3, mass: 1.9e-6, time: 2.3e-3 };
-    let si = Units { length: 1.0, mass: 1.0, time: 1.0 };
+    let foot_pound_minute = Units {
+        length: 3.280_839_9,
+        mass: 2.204_622_6,
+        time: 1.0 / 60.0,
+    };
+    let micro = Units {
+        length: 1.1e6,
+        mass: 1.7e9,
+        time: 1.3e6,
+    };
+    let kilo = Units {
+        length: 0.7e-3,
+        mass: 1.9e-6,
+        time: 2.3e-3,
+    };
+    let si = Units {
+        length: 1.0,
+        mass: 1.0,
+        time: 1.0,
+    };
     for (name, scheme) in tumbling::conserving_schemes() {
         let run = |units| {
             let mut simulation = setup::start(model_in(units, scheme));
@@ -96,24 +118,48 @@ fn results_scale_with_the_units() {
             simulation
         };
         let expected = run(si);
-        assert!(expected.energies().plastic > 0.0 && expected.energies().contact != 0.0, "{name}");
+        assert!(
+            expected.energies().plastic > 0.0 && expected.energies().contact != 0.0,
+            "{name}"
+        );
         for units in [foot_pound_minute, micro, kilo] {
             let got = run(units);
             let close = |what: &str, got: f64, expected: f64, unit: f64, scale: f64| {
                 let error = (got / unit - expected).abs() / scale;
                 assert!(error < 1e-9, "{name}, {units:?}: {what} off by {error:.2e}");
             };
-            close("time", got.time(), expected.time(), units.time, expected.time());
+            close(
+                "time",
+                got.time(),
+                expected.time(),
+                units.time,
+                expected.time(),
+            );
             let (position, reference) = (&got.state().position, &expected.state().position);
             let difference =
                 largest_difference(reference, position, |i| position[i] / units.length);
-            assert!(difference < 1e-9 * 0.1, "{name}, {units:?}: positions off by {difference:.2e}");
+            assert!(
+                difference < 1e-9 * 0.1,
+                "{name}, {units:?}: positions off by {difference:.2e}"
+            );
             let (e, s) = (got.energies(), expected.energies());
             let unit = units.energy();
             close("kinetic energy", e.kinetic, s.kinetic, unit, s.largest());
             close("elastic energy", e.elastic, s.elastic, unit, s.largest());
-            close("plastic dissipation", e.plastic, s.plastic, unit, s.largest());
-            close("numerical dissipation", e.numerical, s.numerical, unit, s.largest());
+            close(
+                "plastic dissipation",
+                e.plastic,
+                s.plastic,
+                unit,
+                s.largest(),
+            );
+            close(
+                "numerical dissipation",
+                e.numerical,
+                s.numerical,
+                unit,
+                s.largest(),
+            );
             close("external work", e.external, s.external, unit, s.largest());
             close("work of contact", e.contact, s.contact, unit, s.largest());
         }
@@ -140,8 +186,7 @@ fn turned(turn: &Turn, scheme: Scheme) -> Simulation {
     );
     let velocity = tumbling::velocity(Dimension::Solid);
     let rotated = move |x: &Vec3| rotation * velocity(&(rotation.transpose() * x));
-    let mut simulation =
-        setup::start(setup::free_body(body, setup::copper(), rotated, scheme));
+    let mut simulation = setup::start(setup::free_body(body, setup::copper(), rotated, scheme));
     setup::advance_steps(&mut simulation, 200);
     simulation
 }
@@ -153,7 +198,10 @@ fn turned(turn: &Turn, scheme: Scheme) -> Simulation {
 /// limitation, measured 4e-9 m after 200 steps.
 #[test]
 fn turned_set_up_gives_turned_results() {
-    let none = Turn { name: "none", rotation: Mat3::identity() };
+    let none = Turn {
+        name: "none",
+        rotation: Mat3::identity(),
+    };
     let about_z = Turn {
         name: "about z",
         rotation: Mat3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0),
@@ -168,13 +216,19 @@ fn turned_set_up_gives_turned_results() {
     };
     for (name, scheme) in tumbling::conserving_schemes() {
         let expected = turned(&none, scheme);
-        assert!(expected.energies().plastic > 0.0, "{name}: the body must yield");
+        assert!(
+            expected.energies().plastic > 0.0,
+            "{name}: the body must yield"
+        );
         for turn in [&about_z, &about_x, &cyclic] {
             let got = turned(turn, scheme);
             let back = turn.rotation.transpose();
             let start: Vec<Vec3> = got.reference().position.iter().map(|x| back * x).collect();
             let node = |x: &Vec3| {
-                start.iter().position(|y| (x - y).norm() < 1e-3).expect("the same node, turned")
+                start
+                    .iter()
+                    .position(|y| (x - y).norm() < 1e-3)
+                    .expect("the same node, turned")
             };
             let reference = &expected.reference().position;
             let difference =
@@ -185,7 +239,11 @@ fn turned_set_up_gives_turned_results() {
                 Integrator::Leapfrog => 1e-14,
                 Integrator::TvdRungeKutta => 2e-8,
             };
-            assert!(difference < limit, "{name}, {}: positions off by {difference:.2e} m", turn.name);
+            assert!(
+                difference < limit,
+                "{name}, {}: positions off by {difference:.2e} m",
+                turn.name
+            );
         }
     }
 }

@@ -1,9 +1,7 @@
 //! The body that most properties are checked on: free, translating, rotating, yielding.
 
 use jstsph_geometry::{Body, Dimension};
-use jstsph_solver::{
-    Biharmonic, Integrator, Jst, Laplacian, Model, Scheme, Stabilisation,
-};
+use jstsph_solver::{Biharmonic, Integrator, Jst, Laplacian, Model, Scheme, Stabilisation};
 use jstsph_tensor::{Mat3, Vec3};
 use jstsph_tests::setup;
 
@@ -28,10 +26,12 @@ pub(crate) fn body(dimension: Dimension) -> Body {
 /// yield strain of copper, within a thousand steps.
 pub(crate) fn velocity(dimension: Dimension) -> impl Fn(&Vec3) -> Vec3 {
     let gradient = match dimension {
-        Dimension::PlaneStrain => Mat3::new(1800.0, -2700.0, 0.0, 2100.0, -1500.0, 0.0, 0.0, 0.0, 0.0),
-        Dimension::Solid => {
-            Mat3::new(1500.0, -2700.0, 900.0, 2100.0, -1200.0, -600.0, 300.0, 1200.0, 600.0)
+        Dimension::PlaneStrain => {
+            Mat3::new(1800.0, -2700.0, 0.0, 2100.0, -1500.0, 0.0, 0.0, 0.0, 0.0)
         }
+        Dimension::Solid => Mat3::new(
+            1500.0, -2700.0, 900.0, 2100.0, -1200.0, -600.0, 300.0, 1200.0, 600.0,
+        ),
     };
     move |x| {
         let from_corner = x - Vec3::from(ORIGIN);
@@ -41,7 +41,12 @@ pub(crate) fn velocity(dimension: Dimension) -> impl Fn(&Vec3) -> Vec3 {
 }
 
 pub(crate) fn model(dimension: Dimension, scheme: Scheme) -> Model {
-    setup::free_body(body(dimension), setup::copper(), velocity(dimension), scheme)
+    setup::free_body(
+        body(dimension),
+        setup::copper(),
+        velocity(dimension),
+        scheme,
+    )
 }
 
 /// JST dissipation with the paper's coefficient for impact, on p and J.
@@ -59,7 +64,11 @@ pub(crate) fn jst(laplacian: Laplacian) -> Stabilisation {
 
 /// Upwind dissipation and hourglass stiffness, the remedy for slow forming.
 pub(crate) fn upwind_and_hourglass() -> Stabilisation {
-    Stabilisation { upwind: 0.15, hourglass: 0.02, ..Stabilisation::default() }
+    Stabilisation {
+        upwind: 0.15,
+        hourglass: 0.02,
+        ..Stabilisation::default()
+    }
 }
 
 /// Schemes that must conserve both momenta to round-off, by name.
@@ -70,20 +79,40 @@ pub(crate) fn upwind_and_hourglass() -> Stabilisation {
 pub(crate) fn conserving_schemes() -> Vec<(&'static str, Scheme)> {
     let particles = setup::particles(0.9);
     let bonds = setup::bonds(0.8);
-    let runge_kutta = |scheme, cfl| Scheme { integrator: Integrator::TvdRungeKutta, cfl, ..scheme };
-    let with = |scheme, stabilisation| Scheme { stabilisation, projection: true, ..scheme };
+    let runge_kutta = |scheme, cfl| Scheme {
+        integrator: Integrator::TvdRungeKutta,
+        cfl,
+        ..scheme
+    };
+    let with = |scheme, stabilisation| Scheme {
+        stabilisation,
+        projection: true,
+        ..scheme
+    };
     let bare = Stabilisation::default();
     vec![
         ("particles, RK2", runge_kutta(with(particles, bare), 0.1)),
         ("particles, leapfrog", with(particles, bare)),
         ("bonds, leapfrog, no projection", bonds),
-        ("particles, RK2, JST", runge_kutta(with(particles, jst(Laplacian::Symmetric)), 0.15)),
+        (
+            "particles, RK2, JST",
+            runge_kutta(with(particles, jst(Laplacian::Symmetric)), 0.15),
+        ),
         (
             "particles, RK2, corrected JST",
             runge_kutta(with(particles, jst(Laplacian::Corrected)), 0.15),
         ),
-        ("particles, leapfrog, upwind, hourglass", with(particles, upwind_and_hourglass())),
-        ("bonds, RK2, JST", runge_kutta(with(bonds, jst(Laplacian::Symmetric)), 0.15)),
-        ("bonds, leapfrog, upwind, hourglass", with(bonds, upwind_and_hourglass())),
+        (
+            "particles, leapfrog, upwind, hourglass",
+            with(particles, upwind_and_hourglass()),
+        ),
+        (
+            "bonds, RK2, JST",
+            runge_kutta(with(bonds, jst(Laplacian::Symmetric)), 0.15),
+        ),
+        (
+            "bonds, leapfrog, upwind, hourglass",
+            with(bonds, upwind_and_hourglass()),
+        ),
     ]
 }

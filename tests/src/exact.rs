@@ -56,15 +56,22 @@ impl StandingWave {
         let displacement = self.amplitude * phase.sin();
         let reference = simulation.reference();
         let fields = simulation.particle_fields();
-        let velocity = fields.velocity.iter().zip(&reference.position).map(|(velocity, x)| {
-            let exact = (self.shape)(x) * speed;
-            ((velocity - exact).norm_squared(), exact.norm_squared())
-        });
+        let velocity = fields
+            .velocity
+            .iter()
+            .zip(&reference.position)
+            .map(|(velocity, x)| {
+                let exact = (self.shape)(x) * speed;
+                ((velocity - exact).norm_squared(), exact.norm_squared())
+            });
         let stresses = first_piola_stress(&simulation);
-        let stress = stresses.iter().zip(&reference.point_position).map(|(stress, x)| {
-            let exact = (self.stress)(x) * displacement;
-            ((stress - exact).norm_squared(), exact.norm_squared())
-        });
+        let stress = stresses
+            .iter()
+            .zip(&reference.point_position)
+            .map(|(stress, x)| {
+                let exact = (self.stress)(x) * displacement;
+                ((stress - exact).norm_squared(), exact.norm_squared())
+            });
         Errors {
             velocity: relative_error(velocity, &reference.volume),
             stress: relative_error(stress, &reference.point_volume),
@@ -74,8 +81,10 @@ impl StandingWave {
 
 /// √(Σ V |computed − exact|² / Σ V |exact|²) over squares (|computed − exact|², |exact|²).
 fn relative_error(squares: impl Iterator<Item = (f64, f64)>, volumes: &[f64]) -> f64 {
-    let (error, size) = squares.zip(volumes).fold((0.0, 0.0), |(error, size), (square, volume)| {
-        (error + volume * square.0, size + volume * square.1)
-    });
+    let (error, size) = squares
+        .zip(volumes)
+        .fold((0.0, 0.0), |(error, size), (square, volume)| {
+            (error + volume * square.0, size + volume * square.1)
+        });
     (error / size).sqrt()
 }

@@ -1,8 +1,8 @@
 //! Shared helpers of the verification, property and validation tests.
 //!
 //! [`setup`] builds models in code, [`exact`] compares a run with an exact solution, [`saved`]
-//! reads what only a saved state shows, [`study`]
-//! turns errors over resolutions into observed orders and asserts them.
+//! reads what only a saved state shows, [`study`] turns errors over resolutions into observed
+//! orders and asserts them.
 
 pub mod exact;
 pub mod saved;

@@ -26,5 +26,7 @@ pub fn plastic_history(simulation: &Simulation) -> Vec<PlasticHistory> {
 fn array(simulation: &Simulation, name: &str) -> Vec<f64> {
     let saved = simulation.save();
     let found = saved.arrays.into_iter().find(|(known, _)| known == name);
-    found.unwrap_or_else(|| panic!("a saved state has no array {name}")).1
+    found
+        .unwrap_or_else(|| panic!("a saved state has no array {name}"))
+        .1
 }

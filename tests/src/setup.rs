@@ -1,8 +1,6 @@
 //! Models built in code: boxes, materials, schemes, conditions.
 
-use jstsph_geometry::{
-    Body, Dimension, Lattice, Selection, Shape, Spacing, build_body, select,
-};
+use jstsph_geometry::{Body, Dimension, Lattice, Selection, Shape, Spacing, build_body, select};
 use jstsph_material::MaterialSpec;
 use jstsph_material::hardening::{Hardening, Linear};
 use jstsph_material::models::{HenckyVonMises, NeoHookean};
@@ -26,7 +24,10 @@ pub fn particles(smoothing_ratio: f64) -> Scheme {
         formulation: Formulation::MomentumGradientCofactorJacobian,
         integrator: Integrator::Leapfrog,
         cfl: 0.5,
-        stabilisation: Stabilisation { upwind: 0.3, ..Default::default() },
+        stabilisation: Stabilisation {
+            upwind: 0.3,
+            ..Default::default()
+        },
         projection: true,
         smallest_time_step: 1e-6,
     }
@@ -62,7 +63,10 @@ pub fn block_at(
     dimension: Dimension,
 ) -> Body {
     let min = Vec3::from(origin);
-    let shape = Shape::Box { min, max: min + Vec3::from(size) };
+    let shape = Shape::Box {
+        min,
+        max: min + Vec3::from(size),
+    };
     let spacing = Spacing::Counts(intervals.map(|n| n + 1));
     build_body(shape, Lattice::Cubic { spacing }, dimension).expect("the box is valid")
 }
@@ -70,7 +74,11 @@ pub fn block_at(
 /// Neo-Hookean rubber of the swinging plate and cube: E = 17 MPa, ρ = 1100 kg/m³.
 #[must_use]
 pub fn rubber(poisson_ratio: f64) -> MaterialSpec {
-    MaterialSpec::NeoHookean(NeoHookean { density: 1100.0, young_modulus: 17e6, poisson_ratio })
+    MaterialSpec::NeoHookean(NeoHookean {
+        density: 1100.0,
+        young_modulus: 17e6,
+        poisson_ratio,
+    })
 }
 
 /// Copper of Greto & Kulasegaram 2019, Sect. 4.1: yields at a strain of 0.34 %.
@@ -80,7 +88,10 @@ pub fn copper() -> MaterialSpec {
         density: 8930.0,
         young_modulus: 117e9,
         poisson_ratio: 0.35,
-        hardening: Hardening::Linear(Linear { initial_yield_stress: 0.4e9, modulus: 0.1e9 }),
+        hardening: Hardening::Linear(Linear {
+            initial_yield_stress: 0.4e9,
+            modulus: 0.1e9,
+        }),
     })
 }
 
@@ -148,7 +159,9 @@ pub fn start(model: Model) -> Simulation {
 /// # Panics
 /// If the run breaks.
 pub fn advance(simulation: &mut Simulation, end: f64) {
-    simulation.advance_step(end).unwrap_or_else(|error| panic!("{error}"));
+    simulation
+        .advance_step(end)
+        .unwrap_or_else(|error| panic!("{error}"));
 }
 
 /// Makes `count` steps without an end in sight: with the leapfrog the momenta stay half a step

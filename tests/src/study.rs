@@ -49,7 +49,11 @@ impl Study {
     /// # Panics
     /// If there is not one error per quantity.
     pub fn add(&mut self, refinement: f64, errors: Vec<f64>) {
-        assert_eq!(errors.len(), self.quantities.len(), "one error per quantity");
+        assert_eq!(
+            errors.len(),
+            self.quantities.len(),
+            "one error per quantity"
+        );
         self.rows.push((refinement, errors));
     }
 
@@ -60,7 +64,10 @@ impl Study {
     #[must_use]
     pub fn finest_error(&self, quantity: &str) -> f64 {
         let column = self.column(quantity);
-        self.rows.last().map(|(_, errors)| errors[column]).expect("a study has resolutions")
+        self.rows
+            .last()
+            .map(|(_, errors)| errors[column])
+            .expect("a study has resolutions")
     }
 
     /// Observed order of a quantity between the two finest resolutions.
@@ -102,7 +109,10 @@ impl Study {
     }
 
     /// Shows the table (the test harness captures it; `--no-capture` lets it through).
-    #[expect(clippy::print_stdout, reason = "measured orders are what a reader of these tests wants")]
+    #[expect(
+        clippy::print_stdout,
+        reason = "measured orders are what a reader of these tests wants"
+    )]
     pub fn show(&self) {
         println!("{self}");
     }

@@ -23,10 +23,18 @@ fn problem(intervals: usize, scheme: Scheme) -> StandingWave {
     let frequency = FRAC_PI_2 * speed;
     let p_modulus = material.density() * speed * speed;
     let lame = p_modulus - 2.0 * material.shear_modulus();
-    let body = setup::block([1.0, 0.25, 0.0], [intervals, intervals / 4, 1], Dimension::PlaneStrain);
+    let body = setup::block(
+        [1.0, 0.25, 0.0],
+        [intervals, intervals / 4, 1],
+        Dimension::PlaneStrain,
+    );
     let shape = |x: &Vec3| Vec3::new((FRAC_PI_2 * x.x).sin(), 0.0, 0.0);
-    let mut model =
-        setup::free_body(body, material, |x| shape(x) * (AMPLITUDE * frequency), scheme);
+    let mut model = setup::free_body(
+        body,
+        material,
+        |x| shape(x) * (AMPLITUDE * frequency),
+        scheme,
+    );
     setup::fix(&mut model, "left", [true, false, false]);
     setup::fix(&mut model, "bottom", [false, true, false]);
     setup::fix(&mut model, "top", [false, true, false]);
@@ -75,7 +83,10 @@ fn wide_support_is_second_order_in_velocity() {
 #[test]
 fn bonds_are_second_order_in_velocity() {
     for smoothing_ratio in [0.8, 1.0] {
-        let study = study(&format!("bonds, h = {smoothing_ratio}"), setup::bonds(smoothing_ratio));
+        let study = study(
+            &format!("bonds, h = {smoothing_ratio}"),
+            setup::bonds(smoothing_ratio),
+        );
         study.assert_order("velocity", 1.9..2.2);
         study.assert_order("stress", 1.5..2.2);
         study.assert_finest_error("velocity", 4e-4);

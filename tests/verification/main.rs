@@ -1,5 +1,6 @@
 //! Does the scheme solve the equations? Observed orders of convergence against exact solutions.
 
+mod breathing_disc;
 mod longitudinal_wave;
 mod patch;
 mod swinging_cube;

@@ -2,9 +2,7 @@
 //! exact traction response at the boundary.
 
 use jstsph_geometry::{Body, Dimension, face_areas};
-use jstsph_solver::{
-    Condition, ConditionKind, Integrator, Scheme, Signal, Simulation,
-};
+use jstsph_solver::{Condition, ConditionKind, Integrator, Scheme, Signal, Simulation};
 use jstsph_tensor::{Mat3, Vec3, cofactor, deviator, inverse_transpose};
 use jstsph_tests::{saved, setup};
 
@@ -48,10 +46,14 @@ fn one_step_after(f: &Mat3, body: &Body, scheme: Scheme) -> Simulation {
                 x.copy_from_slice(moved.as_slice());
             }),
             "deformation_gradient" => {
-                array.chunks_exact_mut(9).for_each(|entry| entry.copy_from_slice(f.as_slice()));
+                array
+                    .chunks_exact_mut(9)
+                    .for_each(|entry| entry.copy_from_slice(f.as_slice()));
             }
             "cofactor" => {
-                array.chunks_exact_mut(9).for_each(|entry| entry.copy_from_slice(h.as_slice()));
+                array
+                    .chunks_exact_mut(9)
+                    .for_each(|entry| entry.copy_from_slice(h.as_slice()));
             }
             "jacobian" => array.fill(f.determinant()),
             _ => {}
@@ -125,13 +127,34 @@ fn homogeneous_deformation_gives_its_stress_and_the_exact_traction_response() {
     for body in bodies() {
         let areas = area_vectors(&body);
         let face = body.spacing.powi(body.dimension.count() as i32 - 1);
-        for Patch { name, scheme, inner_defect, boundary_defect } in patches() {
-            for f in [stretch(), shear(), rotation() * stretch(), rotation() * shear()] {
+        for Patch {
+            name,
+            scheme,
+            inner_defect,
+            boundary_defect,
+        } in patches()
+        {
+            for f in [
+                stretch(),
+                shear(),
+                rotation() * stretch(),
+                rotation() * shear(),
+            ] {
                 // A projection takes out the torque that a dead traction of a sheared body has.
-                let simulation = one_step_after(&f, &body, Scheme { projection: false, ..scheme });
+                let simulation = one_step_after(
+                    &f,
+                    &body,
+                    Scheme {
+                        projection: false,
+                        ..scheme
+                    },
+                );
                 let exact = first_piola_stress(&f);
                 for stress in saved::first_piola_stress(&simulation) {
-                    assert!((stress - exact).norm() < 1e-13 * 17e6, "{name}: {stress} {exact}");
+                    assert!(
+                        (stress - exact).norm() < 1e-13 * 17e6,
+                        "{name}: {stress} {exact}"
+                    );
                 }
                 // V_c p_c = −Δt P a_c: nothing inside, the traction −P N at the boundary.
                 let impulse = exact.norm() * face * simulation.time_step();
@@ -140,8 +163,15 @@ fn homogeneous_deformation_gives_its_stress_and_the_exact_traction_response() {
                     let expected = exact * area * -simulation.time_step();
                     let error = (got - expected).norm() / impulse;
                     let inside = *area == Vec3::zeros();
-                    let defect = if inside { inner_defect } else { boundary_defect };
-                    assert!(error < defect, "{name}, particle {c}: {error:.2e} of a face");
+                    let defect = if inside {
+                        inner_defect
+                    } else {
+                        boundary_defect
+                    };
+                    assert!(
+                        error < defect,
+                        "{name}, particle {c}: {error:.2e} of a face"
+                    );
                 }
             }
         }
@@ -163,16 +193,23 @@ fn affine_motion_of_the_outside_is_the_motion_of_the_inside() {
                 let material = setup::rubber(POISSON_RATIO);
                 let density = material.density();
                 // Strain 0.4 after all steps; the rate is far below any wave's.
-                let rate = rate * (0.5 * material.wave_speeds().pressure / (0.5 * steps as f64 / 16.0));
+                let rate =
+                    rate * (0.5 * material.wave_speeds().pressure / (0.5 * steps as f64 / 16.0));
                 let velocity = move |x: &Vec3| rate * x;
                 // No projection: held layers feel forces whose torque is not zero.
-                let scheme = Scheme { integrator, projection: false, ..scheme };
+                let scheme = Scheme {
+                    integrator,
+                    projection: false,
+                    ..scheme
+                };
                 let mut model = setup::free_body(body.clone(), material, velocity, scheme);
                 // Summation by parts is exact four smoothing lengths from the boundary.
                 let margin = (4.0 * scheme.smoothing_ratio).ceil() * body.spacing - 1e-9;
                 let held = |x: &Vec3| (0..2).any(|i| x[i].min(1.0 - x[i]) < margin);
                 let signal = |i: usize| {
-                    Some(Signal::Function(std::sync::Arc::new(move |_, x: &Vec3| velocity(x)[i])))
+                    Some(Signal::Function(std::sync::Arc::new(move |_, x: &Vec3| {
+                        velocity(x)[i]
+                    })))
                 };
                 model.conditions.push(Condition {
                     name: "outside".into(),
@@ -187,12 +224,21 @@ fn affine_motion_of_the_outside_is_the_motion_of_the_inside() {
                 let speed = rate.norm() * density;
                 for (p, x) in simulation.state().momentum.iter().zip(&body.positions) {
                     let error = (p - velocity(x) * density).norm() / speed;
-                    assert!(error < 1e-11, "{name}, {integrator:?}: momentum at {x} off by {error:.2e}");
+                    assert!(
+                        error < 1e-11,
+                        "{name}, {integrator:?}: momentum at {x} off by {error:.2e}"
+                    );
                 }
                 let exact = Mat3::identity() + rate * simulation.time();
-                assert!((exact - Mat3::identity()).norm() > 0.2, "the strains must be large");
+                assert!(
+                    (exact - Mat3::identity()).norm() > 0.2,
+                    "the strains must be large"
+                );
                 for f in &simulation.state().deformation_gradient {
-                    assert!((f - exact).norm() < 1e-12, "{name}, {integrator:?}: {f} {exact}");
+                    assert!(
+                        (f - exact).norm() < 1e-12,
+                        "{name}, {integrator:?}: {f} {exact}"
+                    );
                 }
             }
         }

@@ -26,17 +26,20 @@ fn shape(x: &Vec3) -> Vec3 {
     Vec3::from_fn(|i, _| {
         FACTORS[i]
             * (0..3)
-            .map(|j| {
-                let angle = FRAC_PI_2 * x[j];
-                if i == j { angle.sin() } else { angle.cos() }
-            })
-            .product::<f64>()
+                .map(|j| {
+                    let angle = FRAC_PI_2 * x[j];
+                    if i == j { angle.sin() } else { angle.cos() }
+                })
+                .product::<f64>()
     })
 }
 
 /// grad S.
 fn gradient(x: &Vec3) -> Mat3 {
-    let (s, c) = (x.map(|x| (FRAC_PI_2 * x).sin()), x.map(|x| (FRAC_PI_2 * x).cos()));
+    let (s, c) = (
+        x.map(|x| (FRAC_PI_2 * x).sin()),
+        x.map(|x| (FRAC_PI_2 * x).cos()),
+    );
     Mat3::from_fn(|i, j| {
         let k = (6 - i - j) % 3;
         let value = if i == j {

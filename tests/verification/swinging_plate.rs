@@ -11,9 +11,7 @@
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
 
 use jstsph_geometry::Dimension;
-use jstsph_solver::{
-    Biharmonic, Integrator, Jst, Laplacian, Scheme, Stabilisation, Weights,
-};
+use jstsph_solver::{Biharmonic, Integrator, Jst, Laplacian, Scheme, Stabilisation, Weights};
 use jstsph_tensor::{Mat3, Vec3};
 use jstsph_tests::exact::{ERRORS, StandingWave};
 use jstsph_tests::{Study, setup};
@@ -30,7 +28,11 @@ fn problem(intervals: usize, poisson_ratio: f64, amplitude: f64, scheme: Scheme)
     let material = setup::rubber(poisson_ratio);
     let frequency = PI * material.wave_speeds().shear / SQRT_2;
     let shear_modulus = material.shear_modulus();
-    let body = setup::block([1.0, 1.0, 0.0], [intervals, intervals, 1], Dimension::PlaneStrain);
+    let body = setup::block(
+        [1.0, 1.0, 0.0],
+        [intervals, intervals, 1],
+        Dimension::PlaneStrain,
+    );
     let speed = amplitude * frequency;
     let mut model = setup::free_body(body, material, |x| shape(x) * speed, scheme);
     setup::fix(&mut model, "left", [true, false, false]);
@@ -53,7 +55,9 @@ const INTERVALS: [usize; 3] = [10, 20, 40];
 fn study(name: &str, intervals: &[usize], poisson_ratio: f64, scheme: Scheme) -> Study {
     let title = format!("swinging plate, nu = {poisson_ratio}, {name}");
     let study = Study::over(title, &ERRORS, intervals, |n| {
-        problem(n, poisson_ratio, AMPLITUDE, scheme).errors_after(0.625).row()
+        problem(n, poisson_ratio, AMPLITUDE, scheme)
+            .errors_after(0.625)
+            .row()
     });
     study.show();
     study
@@ -63,7 +67,12 @@ fn study(name: &str, intervals: &[usize], poisson_ratio: f64, scheme: Scheme) ->
 #[test]
 fn particles_with_upwind_are_second_order() {
     for (poisson_ratio, limits) in [(0.3, [3.9e-4, 8.7e-4]), (0.45, [3.9e-4, 2.5e-3])] {
-        let study = study("particles", &[10, 20, 40, 80], poisson_ratio, setup::particles(0.9));
+        let study = study(
+            "particles",
+            &[10, 20, 40, 80],
+            poisson_ratio,
+            setup::particles(0.9),
+        );
         study.assert_order("velocity", 1.9..2.2);
         study.assert_order("stress", 1.7..2.2);
         study.assert_finest_error("velocity", limits[0]);
@@ -74,8 +83,11 @@ fn particles_with_upwind_are_second_order() {
 /// The paper's integrator; measured 1.98 and 1.79.
 #[test]
 fn runge_kutta_is_as_accurate_as_the_leapfrog() {
-    let runge_kutta =
-        Scheme { integrator: Integrator::TvdRungeKutta, cfl: 0.3, ..setup::particles(0.9) };
+    let runge_kutta = Scheme {
+        integrator: Integrator::TvdRungeKutta,
+        cfl: 0.3,
+        ..setup::particles(0.9)
+    };
     let study = study("particles, TVD-RK2", &INTERVALS, 0.3, runge_kutta);
     study.assert_order("velocity", 1.9..2.2);
     study.assert_order("stress", 1.7..2.2);
@@ -94,10 +106,18 @@ fn jst_dissipation_keeps_second_order() {
         let scheme = Scheme {
             integrator: Integrator::TvdRungeKutta,
             cfl: 0.3,
-            stabilisation: Stabilisation { jst: Some(jst), ..Default::default() },
+            stabilisation: Stabilisation {
+                jst: Some(jst),
+                ..Default::default()
+            },
             ..setup::particles(0.9)
         };
-        let study = study(&format!("particles, JST {laplacian:?}"), &INTERVALS, 0.3, scheme);
+        let study = study(
+            &format!("particles, JST {laplacian:?}"),
+            &INTERVALS,
+            0.3,
+            scheme,
+        );
         study.assert_order("velocity", 1.9..2.2);
         study.assert_order("stress", 1.85..2.2);
     }
@@ -106,7 +126,10 @@ fn jst_dissipation_keeps_second_order() {
 /// Measured 1.99 and 2.01.
 #[test]
 fn particles_without_dissipation_are_second_order() {
-    let scheme = Scheme { stabilisation: Stabilisation::default(), ..setup::particles(0.9) };
+    let scheme = Scheme {
+        stabilisation: Stabilisation::default(),
+        ..setup::particles(0.9)
+    };
     let study = study("particles, no dissipation", &INTERVALS, 0.3, scheme);
     study.assert_order("velocity", 1.9..2.2);
     study.assert_order("stress", 1.9..2.2);
@@ -118,7 +141,12 @@ fn particles_without_dissipation_are_second_order() {
 #[test]
 fn wide_support_is_second_order_in_velocity() {
     for poisson_ratio in [0.3, 0.45] {
-        let study = study("particles, h = 1.2", &INTERVALS, poisson_ratio, setup::particles(1.2));
+        let study = study(
+            "particles, h = 1.2",
+            &INTERVALS,
+            poisson_ratio,
+            setup::particles(1.2),
+        );
         study.assert_order("velocity", 1.9..2.2);
         study.assert_order("stress", 1.5..2.2);
         study.assert_finest_error("velocity", 3e-3);
@@ -133,7 +161,12 @@ fn bonds_are_second_order_in_velocity() {
     for poisson_ratio in [0.3, 0.45] {
         for (smoothing_ratio, limit) in [(0.8, 1.7e-3), (1.0, 2.1e-3)] {
             let name = format!("bonds, h = {smoothing_ratio}");
-            let study = study(&name, &INTERVALS, poisson_ratio, setup::bonds(smoothing_ratio));
+            let study = study(
+                &name,
+                &INTERVALS,
+                poisson_ratio,
+                setup::bonds(smoothing_ratio),
+            );
             study.assert_order("velocity", 1.9..2.2);
             study.assert_order("stress", 1.5..2.2);
             study.assert_finest_error("velocity", limit);
@@ -146,7 +179,10 @@ fn bonds_are_second_order_in_velocity() {
 /// writes it, the first row inside sees half of its outer neighbours.
 #[test]
 fn tributary_volumes_as_weights_are_first_order() {
-    let scheme = Scheme { weights: Weights::Volume, ..setup::particles(0.9) };
+    let scheme = Scheme {
+        weights: Weights::Volume,
+        ..setup::particles(0.9)
+    };
     let study = study("particles, one volume", &INTERVALS, 0.3, scheme);
     study.assert_order("velocity", 0.9..1.3);
     study.assert_order("stress", 0.4..0.6);
@@ -159,9 +195,21 @@ fn amplitude_of_the_study_is_in_the_linear_range() {
     let errors = |amplitude| problem(40, 0.3, amplitude, setup::particles(0.9)).errors_after(0.625);
     let small = errors(AMPLITUDE);
     let half = errors(0.5 * AMPLITUDE);
-    assert!((half.velocity / small.velocity - 1.0).abs() < 1e-3, "{half:?} {small:?}");
-    assert!((half.stress / small.stress - 1.0).abs() < 1e-3, "{half:?} {small:?}");
+    assert!(
+        (half.velocity / small.velocity - 1.0).abs() < 1e-3,
+        "{half:?} {small:?}"
+    );
+    assert!(
+        (half.stress / small.stress - 1.0).abs() < 1e-3,
+        "{half:?} {small:?}"
+    );
     let published = errors(5e-4);
-    assert!(published.velocity < 1.5 * small.velocity, "{published:?} {small:?}");
-    assert!(published.stress < 1.5 * small.stress, "{published:?} {small:?}");
+    assert!(
+        published.velocity < 1.5 * small.velocity,
+        "{published:?} {small:?}"
+    );
+    assert!(
+        published.stress < 1.5 * small.stress,
+        "{published:?} {small:?}"
+    );
 }

@@ -29,13 +29,20 @@ fn model(dimension: Dimension, material: MaterialSpec, scheme: Scheme) -> Model 
     };
     let body = setup::block([1.0, 0.75, 0.75], intervals, dimension);
     let speed = SPEED * material.wave_speeds().pressure;
-    let flat = if dimension == Dimension::Solid { 1.0 } else { 0.0 };
+    let flat = if dimension == Dimension::Solid {
+        1.0
+    } else {
+        0.0
+    };
     setup::free_body(
         body,
         material,
         |x| {
-            Vec3::new((PI * x.x).cos() - x.y, x.x - 0.5 + (PI * x.y).sin(), flat * (x.z * x.x - 0.3))
-                * speed
+            Vec3::new(
+                (PI * x.x).cos() - x.y,
+                x.x - 0.5 + (PI * x.y).sin(),
+                flat * (x.z * x.x - 0.3),
+            ) * speed
         },
         scheme,
     )
@@ -63,34 +70,65 @@ fn differences(now: &Simulation, reference: &Simulation) -> Vec<f64> {
     }
     let (a, b) = (now.state(), reference.state());
     let strain = |simulation| {
-        saved::plastic_history(simulation).into_iter().map(|h| h.equivalent_plastic_strain)
+        saved::plastic_history(simulation)
+            .into_iter()
+            .map(|h| h.equivalent_plastic_strain)
     };
     vec![
         vectors(&a.momentum, &b.momentum),
         tensors(&a.deformation_gradient, &b.deformation_gradient),
         tensors(&a.cofactor, &b.cofactor),
-        root_mean_square(a.jacobian.iter().zip(&b.jacobian).map(|(a, b)| (a - b) * (a - b))),
+        root_mean_square(
+            a.jacobian
+                .iter()
+                .zip(&b.jacobian)
+                .map(|(a, b)| (a - b) * (a - b)),
+        ),
         vectors(&a.position, &b.position),
-        root_mean_square(strain(now).zip(strain(reference)).map(|(a, b)| (a - b) * (a - b))),
+        root_mean_square(
+            strain(now)
+                .zip(strain(reference))
+                .map(|(a, b)| (a - b) * (a - b)),
+        ),
     ]
 }
 
 fn study(name: &str, dimension: Dimension, material: &MaterialSpec, scheme: Scheme) -> Study {
     let at = |refinement: usize| {
-        run(dimension, material, Scheme { cfl: 1.0 / refinement as f64, ..scheme })
+        run(
+            dimension,
+            material,
+            Scheme {
+                cfl: 1.0 / refinement as f64,
+                ..scheme
+            },
+        )
     };
     let reference = at(REFERENCE);
     let title = format!("time step, {name}, {dimension}, {:?}", scheme.integrator);
-    let study =
-        Study::over(title, &UNKNOWNS, &REFINEMENTS, |n| differences(&at(n), &reference));
+    let study = Study::over(title, &UNKNOWNS, &REFINEMENTS, |n| {
+        differences(&at(n), &reference)
+    });
     study.show();
     study
 }
 
 fn schemes(integrator: Integrator) -> [(&'static str, Scheme); 2] {
     [
-        ("particles", Scheme { integrator, ..setup::particles(0.9) }),
-        ("bonds", Scheme { integrator, ..setup::bonds(0.8) }),
+        (
+            "particles",
+            Scheme {
+                integrator,
+                ..setup::particles(0.9)
+            },
+        ),
+        (
+            "bonds",
+            Scheme {
+                integrator,
+                ..setup::bonds(0.8)
+            },
+        ),
     ]
 }
 
@@ -102,7 +140,10 @@ fn elastic_vibration_is_second_order_in_every_unknown() {
     for dimension in [Dimension::PlaneStrain, Dimension::Solid] {
         for integrator in INTEGRATORS {
             for (name, scheme) in schemes(integrator) {
-                let scheme = Scheme { stabilisation: Stabilisation::default(), ..scheme };
+                let scheme = Scheme {
+                    stabilisation: Stabilisation::default(),
+                    ..scheme
+                };
                 let study = study(name, dimension, &setup::rubber(0.3), scheme);
                 for unknown in ELASTIC_UNKNOWNS {
                     study.assert_order(unknown, 1.9..2.15);
@@ -116,7 +157,10 @@ fn elastic_vibration_is_second_order_in_every_unknown() {
 #[test]
 fn runge_kutta_is_second_order_with_dissipation() {
     for (name, scheme) in schemes(Integrator::TvdRungeKutta) {
-        let scheme = Scheme { stabilisation: setup::particles(0.9).stabilisation, ..scheme };
+        let scheme = Scheme {
+            stabilisation: setup::particles(0.9).stabilisation,
+            ..scheme
+        };
         let study = study(name, Dimension::PlaneStrain, &setup::rubber(0.3), scheme);
         for unknown in ELASTIC_UNKNOWNS {
             study.assert_order(unknown, 1.9..2.15);
@@ -130,7 +174,10 @@ fn runge_kutta_is_second_order_with_dissipation() {
 #[test]
 fn leapfrog_takes_the_dissipation_half_a_step_late() {
     for (name, scheme) in schemes(Integrator::Leapfrog) {
-        let scheme = Scheme { stabilisation: setup::particles(0.9).stabilisation, ..scheme };
+        let scheme = Scheme {
+            stabilisation: setup::particles(0.9).stabilisation,
+            ..scheme
+        };
         let study = study(name, Dimension::PlaneStrain, &setup::rubber(0.3), scheme);
         for unknown in ELASTIC_UNKNOWNS {
             study.assert_order(unknown, 1.0..1.6);
@@ -144,7 +191,10 @@ fn leapfrog_takes_the_dissipation_half_a_step_late() {
 fn plastic_flow_is_first_order() {
     for integrator in INTEGRATORS {
         for (name, scheme) in schemes(integrator) {
-            let scheme = Scheme { stabilisation: Stabilisation::default(), ..scheme };
+            let scheme = Scheme {
+                stabilisation: Stabilisation::default(),
+                ..scheme
+            };
             let study = study(name, Dimension::PlaneStrain, &setup::copper(), scheme);
             for unknown in UNKNOWNS {
                 study.assert_order(unknown, 0.8..2.2);

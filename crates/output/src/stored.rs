@@ -157,9 +157,7 @@ impl<'a> File<'a> {
     ) -> Result<(), FrameProblem> {
         let name = array_name(element);
         match attribute(element, "NumberOfComponents") {
-            None => frame
-                .scalars
-                .push((name, self.floats(element, points, 1)?)),
+            None => frame.scalars.push((name, self.floats(element, points, 1)?)),
             Some("3") => {
                 let flat = self.floats(element, points, 3)?;
                 frame.vectors.push((name, vectors(&flat)));
@@ -208,8 +206,10 @@ impl<'a> File<'a> {
         element: &str,
     ) -> Result<impl Iterator<Item = [u8; N]>, FrameProblem> {
         let bytes = self.bytes(element)?;
-        Ok((0..bytes.len() / N)
-            .map(move |word| std::array::from_fn(|byte| bytes[word * N + byte])))
+        Ok(
+            (0..bytes.len() / N)
+                .map(move |word| std::array::from_fn(|byte| bytes[word * N + byte])),
+        )
     }
 
     fn cells(&self, points: usize) -> Result<StoredCells, FrameProblem> {
@@ -348,9 +348,7 @@ mod tests {
     impl Sample {
         fn new() -> Self {
             let positions: Vec<Vec3> = (0..8)
-                .map(|i| {
-                    Vec3::new(f64::from(i % 2), f64::from(i / 2 % 2), f64::from(i / 4)) / 3.0
-                })
+                .map(|i| Vec3::new(f64::from(i % 2), f64::from(i / 2 % 2), f64::from(i / 4)) / 3.0)
                 .collect();
             let pressure = (0..8).map(|i| -0.1 * f64::from(i)).collect();
             let stress = (0..8)
@@ -415,9 +413,7 @@ mod tests {
                     };
                     let expected = match cells {
                         CellKind::Vertices => StoredCells::None,
-                        CellKind::Lattice => {
-                            StoredCells::Hexahedra(vec![[0, 1, 3, 2, 4, 5, 7, 6]])
-                        }
+                        CellKind::Lattice => StoredCells::Hexahedra(vec![[0, 1, 3, 2, 4, 5, 7, 6]]),
                     };
                     let read = parse(&written(&sample.frame(), options)).unwrap();
                     assert_eq!(read, sample.stored(expected, round), "{options:?}");

@@ -205,3 +205,6 @@ impl Obstacles {
 
 /// Most obstacles of one model; their velocities live on the stack of a step.
 pub(crate) const MAX_OBSTACLES: usize = 64;
+
+#[cfg(test)]
+mod tests;

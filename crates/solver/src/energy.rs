@@ -116,7 +116,7 @@ impl Simulation {
             hourglass: if coefficient == 0.0 {
                 0.0
             } else {
-                force::hourglass_energy(reference, &self.state, coefficient, &self.work)
+                force::hourglass_energy(reference, &self.state, coefficient)
             },
             external: work(|work| work.external),
             contact: work(|work| work.contact),
@@ -198,3 +198,6 @@ impl Simulation {
         self.ledger.contact.iter().map(|slot| u64::from(slot.corrections)).sum()
     }
 }
+
+#[cfg(test)]
+mod tests;

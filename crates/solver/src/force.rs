@@ -1,6 +1,6 @@
 //! Internal force (3.10), hourglass stiffness, and external forces.
 
-use jstsph_tensor::Vec3;
+use jstsph_tensor::{Mat3, Vec3};
 
 use crate::model::{Condition, ConditionKind, Model, Quadrature, Signal};
 use crate::parallel;
@@ -78,17 +78,17 @@ pub(crate) fn hourglass(reference: &Reference, state: &State, coefficient: f64, 
 }
 
 /// Energy stored by the hourglass stiffness, ¼ ζ μ Σ_ab V_a V_b w_ab |·|², J.
-pub(crate) fn hourglass_energy(
-    reference: &Reference,
-    state: &State,
-    coefficient: f64,
-    work: &Workspace,
-) -> f64 {
+///
+/// Averages F anew, because the buffers hold that of the last force evaluation: none yet at the
+/// start of a run, stage 2 of a Runge-Kutta step. Allocates, and is meant for output.
+pub(crate) fn hourglass_energy(reference: &Reference, state: &State, coefficient: f64) -> f64 {
     let mut total = 0.0;
     for body in &reference.bodies {
         let Some(pairs) = &body.pairs else { continue };
         let range = body.particles.clone();
-        let deformation = &work.particle_deformation_gradient[range.clone()];
+        let of_points = &state.deformation_gradient[body.points.clone()];
+        let mut deformation = vec![Mat3::zeros(); range.len()];
+        parallel::fill(&mut deformation, |a| body.shares.mean_tensor(a, |q| of_points[q]));
         let (position, start) = (&state.position[range.clone()], &reference.position[range.clone()]);
         let volume = &reference.volume[range];
         total += 0.25

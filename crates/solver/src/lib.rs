@@ -22,6 +22,8 @@ mod simulation;
 mod state;
 mod strain;
 mod stress;
+#[cfg(test)]
+mod testing;
 mod time_step;
 mod tvd_runge_kutta;
 

@@ -93,3 +93,6 @@ fn solve_symmetric(matrix: &Mat3, right: &Vec3) -> Vec3 {
     }
     solution
 }
+
+#[cfg(test)]
+mod tests;

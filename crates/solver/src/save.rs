@@ -222,3 +222,6 @@ impl Simulation {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests;

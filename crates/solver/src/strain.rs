@@ -144,3 +144,6 @@ pub(crate) fn constrain(strains: Strains, reference: &Reference, state: &mut Sta
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

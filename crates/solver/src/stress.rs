@@ -281,3 +281,6 @@ pub(crate) fn equivalent_plastic_strain(
         });
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -117,6 +117,106 @@ pub(crate) fn smallest_stretch(deformation_gradient: &Mat3) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::{Integrator, Quadrature};
+    use crate::testing::{Random, body, copper, elastic, in_pool, model, scheme};
+
+    /// Two bodies of different material and more points than one leaf of the reduction has.
+    fn two_bodies() -> (Reference, State) {
+        let mut model = model([30, 20, 1], elastic(), scheme(Quadrature::Bonds, Integrator::Leapfrog));
+        model.bodies.push(body("second", [40, 35, 1], copper()));
+        let reference = Reference::new(&model).unwrap();
+        let momentum = vec![jstsph_tensor::Vec3::zeros(); reference.position.len()];
+        let state = State::undeformed(&reference, momentum);
+        (reference, state)
+    }
+
+    fn deform(state: &mut State, q: usize, f: Mat3) {
+        state.deformation_gradient[q] = f;
+        state.cofactor[q] = jstsph_tensor::cofactor(&f);
+    }
+
+    /// The step and its point with the largest eigenvalue of every point computed.
+    fn brute_force(reference: &Reference, state: &State) -> (f64, usize) {
+        let mut best = (f64::INFINITY, 0);
+        for body in &reference.bodies {
+            let mut largest = (0.0, 0);
+            for q in body.points.clone() {
+                let inverse =
+                    inverse_cauchy_green(&state.deformation_gradient[q], &state.cofactor[q]);
+                let value = largest_eigenvalue(&inverse);
+                if value > largest.0 {
+                    largest = (value, q);
+                }
+            }
+            let time = body.spacing * (1.0 / largest.0.sqrt()) / body.wave_speed;
+            if time < best.0 {
+                best = (time, largest.1);
+            }
+        }
+        best
+    }
+
+    #[test]
+    fn skipping_candidates_never_changes_the_step() {
+        let (reference, mut state) = two_bodies();
+        let mut random = Random(53);
+        for trial in 0..60 {
+            // From nearly rigid (all points almost equal) to wildly different stretches.
+            let amplitude = [0.0, 1e-15, 1e-9, 1e-3, 0.3, 0.6][trial % 6];
+            for q in 0..reference.point_volume.len() {
+                let f = Mat3::identity() + random.tensor() * amplitude;
+                // One dominant stretch makes the bound that is skipped by nearly sharp.
+                let squeeze = Mat3::from_diagonal(&jstsph_tensor::Vec3::new(
+                    1.0,
+                    1.0 - 0.9 * amplitude * random.number().abs(),
+                    1.0,
+                ));
+                deform(&mut state, q, squeeze * f);
+            }
+            let expected = brute_force(&reference, &state);
+            for threads in [1, 3] {
+                let found = in_pool(threads, || stable_step(&reference, &state));
+                assert_eq!(found.time.to_bits(), expected.0.to_bits(), "amplitude {amplitude}");
+                assert_eq!(found.point, expected.1, "amplitude {amplitude}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_body_with_the_shorter_step_decides() {
+        let (reference, mut state) = two_bodies();
+        let second = &reference.bodies[1];
+        let undeformed = stable_step(&reference, &state);
+        assert!((undeformed.time - 1e-3 / second.wave_speed).abs() < 1e-15 * undeformed.time.max(1.0));
+        assert_eq!((undeformed.point, undeformed.stretch), (second.points.start, 1.0));
+        deform(&mut state, 77, Mat3::from_diagonal(&jstsph_tensor::Vec3::new(1.0, 0.1, 1.0)));
+        let found = stable_step(&reference, &state);
+        assert_eq!(found.point, 77);
+        assert!((found.stretch - 0.1).abs() < 1e-15);
+        let expected = 0.1 * 1e-3 / reference.bodies[0].wave_speed;
+        assert!((found.time / expected - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_first_point_that_is_not_finite_is_found() {
+        let (reference, start) = two_bodies();
+        let points = reference.point_volume.len();
+        for places in [vec![0], vec![points - 1], vec![900, 2000, 700], vec![1111]] {
+            for value in [f64::NAN, f64::INFINITY] {
+                let mut state = start.clone();
+                let mut f = Mat3::identity();
+                f.m21 = value;
+                places.iter().for_each(|q| deform(&mut state, *q, f));
+                // A tiny stretch elsewhere must not hide it.
+                deform(&mut state, 5, Mat3::identity() * 1e-3);
+                for threads in [1, 3] {
+                    let found = in_pool(threads, || stable_step(&reference, &state));
+                    assert!(found.time.is_nan(), "{places:?}");
+                    assert_eq!(found.point, *places.iter().min().unwrap());
+                }
+            }
+        }
+    }
 
     #[test]
     fn smallest_stretch_of_a_diagonal_is_its_smallest_entry() {

@@ -149,6 +149,8 @@ pub(crate) struct Axes<'a> {
     pub(crate) rulers: [Ruler; 2],
     pub(crate) labels: [&'a str; 2],
     pub(crate) grid: bool,
+    /// Whether the y axis is labelled; panels side by side share the first one's.
+    pub(crate) has_y_labels: bool,
 }
 
 impl Axes<'_> {
@@ -199,12 +201,18 @@ impl Axes<'_> {
         for tick in self.y_ticks(frame.height()) {
             let y = self.place(frame, [self.rulers[0].lower, tick.value])[1];
             canvas.line([frame.left - TICK, y], [frame.left, y], stroke);
+            if !self.has_y_labels {
+                continue;
+            }
             let at = [frame.left - TICK - GAP, y + HALF_HEIGHT * TICK_SIZE];
             canvas.text(at, TICK_SIZE, Anchor::End, &tick.label);
         }
         let middle = 0.5 * (frame.left + frame.right);
         let y = frame.bottom + BELOW - 0.25 * LABEL_SIZE;
         canvas.text([middle, y], LABEL_SIZE, Anchor::Middle, self.labels[0]);
+        if !self.has_y_labels {
+            return;
+        }
         let x = frame.left - self.left_space(frame.height()) + 0.8 * LABEL_SIZE;
         let centre = 0.5 * (frame.top + frame.bottom);
         canvas.upward_text([x, centre], LABEL_SIZE, self.labels[1]);

@@ -53,6 +53,8 @@ pub(crate) enum Shape {
         fill: Colour,
         outline: Option<Stroke>,
     },
+    /// A piece of a coloured surface, which joins its neighbours without a seam.
+    Patch { points: Vec<[f64; 2]>, fill: Colour },
     Polyline {
         points: Vec<[f64; 2]>,
         stroke: Stroke,
@@ -96,6 +98,10 @@ impl Canvas {
 
     pub(crate) fn polyline(&mut self, points: Vec<[f64; 2]>, stroke: Stroke) {
         self.shapes.push(Shape::Polyline { points, stroke });
+    }
+
+    pub(crate) fn patch(&mut self, points: Vec<[f64; 2]>, fill: Colour) {
+        self.shapes.push(Shape::Patch { points, fill });
     }
 
     pub(crate) fn polygon(&mut self, points: Vec<[f64; 2]>, fill: Colour, outline: Option<Stroke>) {

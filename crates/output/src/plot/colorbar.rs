@@ -35,12 +35,11 @@ impl ColourBar {
         // A constant field still needs an interval; round-off about a constant is not a pattern.
         let magnitude = lower.abs().max(upper.abs());
         if upper - lower <= 1e-9 * magnitude || magnitude == 0.0 {
-            let half = if magnitude == 0.0 {
-                1.0
+            (lower, upper) = if magnitude == 0.0 {
+                (0.0, 1.0)
             } else {
-                0.1 * magnitude
+                (lower - 0.1 * magnitude, upper + 0.1 * magnitude)
             };
-            (lower, upper) = (lower - half, upper + half);
         }
         let (factor, label) = plot.quantity.shown(lower.abs().max(upper.abs()));
         let slack = 1e-9 * (upper - lower);

@@ -8,6 +8,8 @@ use super::{Quantity, clip, text};
 use crate::{OutputError, Table};
 
 const PLOT: [f64; 2] = [520.0, 330.0];
+/// Height of one of several diagrams.
+const LOW: f64 = 200.0;
 const MARGIN: f64 = 12.0;
 const KEY: f64 = 24.0;
 const KEY_HEIGHT: f64 = 20.0;
@@ -139,46 +141,113 @@ impl LinePlot {
     }
 }
 
-pub(crate) fn draw(plot: &LinePlot) -> Result<Canvas, OutputError> {
-    plot.check()?;
-    let points = || plot.series.iter().flat_map(|series| &series.points);
-    let x_room = if plot.has_markers() { 0.04 } else { 0.0 };
-    let (x_ruler, x_factor, x_label) =
-        ruler(points().map(|point| point.0), plot.x_scale, &plot.x, x_room);
-    let (y_ruler, y_factor, y_label) =
-        ruler(points().map(|point| point.1), plot.y_scale, &plot.y, 0.05);
-    let axes = Axes {
-        rulers: [x_ruler, y_ruler],
-        labels: [&x_label, &y_label],
-        grid: true,
-    };
+/// A diagram that is not yet placed.
+struct Diagram<'a> {
+    plot: &'a LinePlot,
+    rulers: [Ruler; 2],
+    /// Shown value over SI value, along both axes.
+    factors: [f64; 2],
+    labels: [String; 2],
+    height: f64,
+}
 
-    let left = MARGIN + axes.left_space(PLOT[1]);
-    let top = MARGIN + if plot.title.is_empty() { 0.0 } else { TITLE };
-    let frame = Rect {
-        left,
-        top,
-        right: left + PLOT[0],
-        bottom: top + PLOT[1],
-    };
-    let legend = legend_width(plot);
-    let title = text::width(&plot.title, TITLE_SIZE) + 2.0 * MARGIN;
-    let mut canvas = Canvas::new(
-        (frame.right + legend + MARGIN).max(title),
-        frame.bottom + BELOW + MARGIN,
-    );
-    axes.draw_below(&mut canvas, &frame);
-    for (index, series) in plot.series.iter().enumerate() {
-        let places: Vec<[f64; 2]> = series
-            .points
-            .iter()
-            .map(|&(x, y)| axes.place(&frame, [x * x_factor, y * y_factor]))
-            .collect();
-        draw_series(&mut canvas, &frame, series.style, colour(index), &places);
+impl<'a> Diagram<'a> {
+    fn new(plot: &'a LinePlot, height: f64) -> Result<Self, OutputError> {
+        plot.check()?;
+        let points = || plot.series.iter().flat_map(|series| &series.points);
+        let x_room = if plot.has_markers() { 0.04 } else { 0.0 };
+        let (x, x_factor, x_label) =
+            ruler(points().map(|point| point.0), plot.x_scale, &plot.x, x_room);
+        let (y, y_factor, y_label) =
+            ruler(points().map(|point| point.1), plot.y_scale, &plot.y, 0.05);
+        Ok(Self {
+            plot,
+            rulers: [x, y],
+            factors: [x_factor, y_factor],
+            labels: [x_label, y_label],
+            // A long legend needs its space.
+            height: height.max(KEY_HEIGHT * plot.series.len() as f64),
+        })
     }
-    axes.draw_above(&mut canvas, &frame);
-    draw_legend(&mut canvas, plot, &frame);
-    draw_title(&mut canvas, &frame, &plot.title);
+
+    fn axes(&self) -> Axes<'_> {
+        Axes {
+            rulers: self.rulers,
+            labels: [&self.labels[0], &self.labels[1]],
+            grid: true,
+            has_y_labels: true,
+        }
+    }
+
+    fn above(&self) -> f64 {
+        if self.plot.title.is_empty() {
+            0.0
+        } else {
+            TITLE
+        }
+    }
+
+    fn draw(&self, canvas: &mut Canvas, frame: &Rect) {
+        let axes = self.axes();
+        axes.draw_below(canvas, frame);
+        for (index, series) in self.plot.series.iter().enumerate() {
+            let places: Vec<[f64; 2]> = series
+                .points
+                .iter()
+                .map(|&(x, y)| axes.place(frame, [x * self.factors[0], y * self.factors[1]]))
+                .collect();
+            draw_series(canvas, frame, series.style, colour(index), &places);
+        }
+        axes.draw_above(canvas, frame);
+        draw_legend(canvas, self.plot, frame);
+        draw_title(canvas, frame, &self.plot.title);
+    }
+}
+
+/// Draws diagrams one above the other, their vertical axes in one line.
+pub(crate) fn draw(heading: &str, plots: &[LinePlot]) -> Result<Canvas, OutputError> {
+    if plots.is_empty() {
+        return Err(OutputError::NothingToDraw {
+            title: heading.to_owned(),
+            reason: "no plot was given",
+        });
+    }
+    let height = if plots.len() == 1 { PLOT[1] } else { LOW };
+    let diagrams = plots
+        .iter()
+        .map(|plot| Diagram::new(plot, height))
+        .collect::<Result<Vec<_>, _>>()?;
+    let widest = |of: &dyn Fn(&Diagram) -> f64| diagrams.iter().map(of).fold(0.0, f64::max);
+    let left = MARGIN + widest(&|diagram| diagram.axes().left_space(diagram.height));
+    let right = left + PLOT[0];
+    let legend = widest(&|diagram| legend_width(diagram.plot));
+    let title = widest(&|diagram| text::width(&diagram.plot.title, TITLE_SIZE))
+        .max(text::width(heading, TITLE_SIZE));
+
+    let mut top = MARGIN + if heading.is_empty() { 0.0 } else { TITLE };
+    let mut frames = Vec::with_capacity(diagrams.len());
+    for diagram in &diagrams {
+        top += diagram.above();
+        let frame = Rect {
+            left,
+            top,
+            right,
+            bottom: top + diagram.height,
+        };
+        top = frame.bottom + BELOW + MARGIN;
+        frames.push(frame);
+    }
+    let mut canvas = Canvas::new((right + legend + MARGIN).max(title + 2.0 * MARGIN), top);
+    for (diagram, frame) in diagrams.iter().zip(&frames) {
+        diagram.draw(&mut canvas, frame);
+    }
+    if !heading.is_empty() {
+        let row = Rect {
+            top: MARGIN + TITLE,
+            ..frames[0]
+        };
+        draw_title(&mut canvas, &row, heading);
+    }
     Ok(canvas)
 }
 
@@ -325,6 +394,10 @@ mod tests {
     use super::*;
     use crate::plot::canvas::Shape;
 
+    fn draw(plot: &LinePlot) -> Result<Canvas, OutputError> {
+        super::draw("", std::slice::from_ref(plot))
+    }
+
     fn series(points: &[(f64, f64)]) -> Series {
         Series {
             label: "s".to_owned(),
@@ -403,6 +476,31 @@ mod tests {
         ));
         assert!(draw(&plot(&[(0.0, 3.0), (1.0, 3.0)], Scale::Linear)).is_ok());
         assert!(draw(&plot(&[(0.0, 3.0), (1.0, 3.0)], Scale::Logarithmic)).is_ok());
+    }
+
+    #[test]
+    fn stacked_diagrams_share_their_vertical_axis() {
+        let plot = |label: &str, largest: f64| LinePlot {
+            y: Quantity::new(label, "m"),
+            series: vec![series(&[(0.0, 0.0), (1.0, largest)])],
+            ..LinePlot::default()
+        };
+        let plots = [plot("first", 1.0), plot("second", 123.0)];
+        let canvas = super::draw("both", &plots).unwrap();
+        assert!(texts(&canvas).contains(&"both"));
+        let starts: Vec<[f64; 2]> = canvas
+            .shapes
+            .iter()
+            .filter_map(|shape| match shape {
+                Shape::Polyline { points, stroke } if stroke.colour == COLOURS[0] => {
+                    Some(points[0])
+                }
+                _ => None,
+            })
+            .collect();
+        assert_eq!(starts.len(), 2);
+        assert_eq!(starts[0][0], starts[1][0]);
+        assert!(starts[1][1] - starts[0][1] > LOW, "{starts:?}");
     }
 
     #[test]

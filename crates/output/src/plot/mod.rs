@@ -6,17 +6,20 @@
 
 mod axis;
 mod canvas;
+mod cells;
 mod clip;
 mod colorbar;
 mod colormap;
 mod hidden;
 mod lines;
+mod panels;
 mod particles;
 mod raster;
 mod svg;
 mod text;
 mod unit;
 mod view;
+mod walls;
 
 use std::path::Path;
 
@@ -29,6 +32,7 @@ pub use lines::{LinePlot, Series, SeriesStyle};
 pub use particles::ParticlePlot;
 pub use unit::Quantity;
 pub use view::{Axis, Section, View};
+pub use walls::Wall;
 
 /// Text that every picture carries near its beginning, to tell ours from others.
 pub(crate) const MARK: &str = "made by jstsph";
@@ -47,7 +51,18 @@ impl Figure {
     /// [`OutputError::NotFinite`], [`OutputError::CellPoint`].
     pub fn particles(plot: &ParticlePlot) -> Result<Self, OutputError> {
         Ok(Self {
-            canvas: particles::draw(plot)?,
+            canvas: particles::draw("", std::slice::from_ref(plot))?,
+        })
+    }
+
+    /// Bodies side by side under a heading (empty for none), each with its own title, with one
+    /// scale and one colour bar. View, range, window and quantity are those of the first plot.
+    ///
+    /// # Errors
+    /// Those of [`Self::particles`].
+    pub fn panels(heading: &str, plots: &[ParticlePlot]) -> Result<Self, OutputError> {
+        Ok(Self {
+            canvas: particles::draw(heading, plots)?,
         })
     }
 
@@ -58,7 +73,17 @@ impl Figure {
     /// [`OutputError::NotPositive`] for values that a logarithmic axis cannot show.
     pub fn lines(plot: &LinePlot) -> Result<Self, OutputError> {
         Ok(Self {
-            canvas: lines::draw(plot)?,
+            canvas: lines::draw("", std::slice::from_ref(plot))?,
+        })
+    }
+
+    /// Several diagrams one above the other under a heading (empty for none).
+    ///
+    /// # Errors
+    /// Those of [`Self::lines`].
+    pub fn stack(heading: &str, plots: &[LinePlot]) -> Result<Self, OutputError> {
+        Ok(Self {
+            canvas: lines::draw(heading, plots)?,
         })
     }
 

@@ -1,22 +1,17 @@
-//! A body coloured by a field.
+//! Bodies coloured by a field: what to draw.
 
 use jstsph_tensor::Vec3;
 
-use super::axis::{Axes, BELOW, HALF_HEIGHT, Ruler, TICK_SIZE, TITLE, TITLE_SIZE, draw_title};
-use super::canvas::{Anchor, Canvas, INK, PAPER, Rect, STEEL, Stroke, mix};
-use super::colorbar::{self, ColourBar};
+use super::canvas::{Canvas, INK, PAPER, Stroke, mix};
+use super::colorbar::ColourBar;
 use super::hidden::visible;
-use super::{Axis, ColourMap, Quantity, Section, View, clip, text};
+use super::panels::{Panel, Panels};
+use super::{ColourMap, Quantity, Section, View, Wall, cells, walls};
 use crate::OutputError;
 use crate::error::{require_finite, require_length};
 
-/// Largest plot area; the body fills one of the two.
-const LARGEST: [f64; 2] = [580.0, 470.0];
-/// Limits of the plot area's width over its height.
-const ASPECT: [f64; 2] = [0.4, 4.0];
-const MARGIN: f64 = 12.0;
-/// Height of the strip below an oblique view with the axes' directions and the scale bar.
-const DIRECTIONS: f64 = 60.0;
+/// The undeformed body is shown if it makes the picture's area larger by this factor at most.
+const MOST_GROWTH: f64 = 2.0;
 
 /// What to draw of a body, all lengths in m.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,11 +30,14 @@ pub struct ParticlePlot<'a> {
     pub view: View,
     /// Shows only the particles in a slab.
     pub section: Option<Section>,
-    /// Quadrilaterals to fill instead of drawing dots, by particle; those with a corner outside
-    /// the section are left out.
+    /// Quadrilaterals to fill, by particle, the field interpolated between their corners; those
+    /// with a corner outside the section are left out. Particles of no cell are drawn as dots.
     pub cells: &'a [[usize; 4]],
     /// Lines of obstacles; cut off at the edge of the picture.
-    pub obstacles: Vec<Vec<Vec3>>,
+    pub walls: Vec<Wall>,
+    /// Lines of the undeformed body, drawn light and dashed; left out where the body has moved so
+    /// far that they would more than double the area of the picture.
+    pub undeformed: Vec<Vec<Vec3>>,
     /// Colours.
     pub colours: ColourMap,
     /// Field values of the first and the last colour; the field's own extremes by default. Values
@@ -68,17 +66,11 @@ impl<'a> ParticlePlot<'a> {
             view: View::default(),
             section: None,
             cells: &[],
-            obstacles: Vec::new(),
+            walls: Vec::new(),
+            undeformed: Vec::new(),
             colours: ColourMap::default(),
             range: None,
             window: None,
-        }
-    }
-
-    fn nothing(&self, reason: &'static str) -> OutputError {
-        OutputError::NothingToDraw {
-            title: self.title.clone(),
-            reason,
         }
     }
 
@@ -100,96 +92,138 @@ impl<'a> ParticlePlot<'a> {
         }
         Ok(())
     }
+
+    fn is_shown(&self, particle: usize) -> bool {
+        self.section
+            .is_none_or(|section| section.contains(&self.positions[particle]))
+    }
+
+    pub(super) fn project(&self, x: &Vec3) -> [f64; 2] {
+        let [right, up, _] = self.view.frame();
+        [right.dot(x), up.dot(x)]
+    }
+
+    pub(super) fn depth(&self, x: &Vec3) -> f64 {
+        self.view.frame()[2].dot(x)
+    }
 }
 
 /// A particle in the plane of view.
 struct Dot {
+    particle: usize,
     place: [f64; 2],
     depth: f64,
-    value: f64,
 }
 
-pub(crate) fn draw(plot: &ParticlePlot) -> Result<Canvas, OutputError> {
-    plot.check()?;
-    let [right, up, toward] = plot.view.frame();
-    let project = |x: &Vec3| [right.dot(x), up.dot(x)];
-    let is_shown = |x: &Vec3| plot.section.is_none_or(|section| section.contains(x));
-    let dots: Vec<Dot> = plot
-        .positions
-        .iter()
-        .zip(plot.values)
-        .filter(|(x, _)| is_shown(x))
-        .map(|(x, &value)| Dot {
-            place: project(x),
-            depth: toward.dot(x),
-            value,
-        })
-        .collect();
-    if dots.is_empty() {
-        return Err(plot.nothing("no particle lies in the section"));
-    }
-
-    let window = window(plot, &dots);
-    let bar = ColourBar::new(plot, dots.iter().map(|dot| dot.value));
-    let layout = Layout::new(plot, window, &bar);
-    let mut canvas = Canvas::new(layout.size[0], layout.size[1]);
-    let place = |point: [f64; 2]| layout.place(point);
-
-    if plot.cells.is_empty() {
-        draw_dots(&mut canvas, plot, dots, &layout, &bar);
-    } else {
-        let mut cells: Vec<_> = plot
-            .cells
-            .iter()
-            .filter(|cell| cell.iter().all(|&a| is_shown(&plot.positions[a])))
-            .map(|cell| {
-                let depth: f64 = cell.iter().map(|&a| toward.dot(&plot.positions[a])).sum();
-                (depth, cell)
+/// Draws plots side by side, with a common scale, window and colour bar.
+pub(crate) fn draw(heading: &str, plots: &[ParticlePlot]) -> Result<Canvas, OutputError> {
+    let nothing = |title: &str, reason| OutputError::NothingToDraw {
+        title: title.to_owned(),
+        reason,
+    };
+    let first = plots
+        .first()
+        .ok_or_else(|| nothing(heading, "no plot was given"))?;
+    let mut dots = Vec::with_capacity(plots.len());
+    for plot in plots {
+        plot.check()?;
+        let shown: Vec<Dot> = (0..plot.positions.len())
+            .filter(|&particle| plot.is_shown(particle))
+            .map(|particle| Dot {
+                particle,
+                place: plot.project(&plot.positions[particle]),
+                depth: plot.depth(&plot.positions[particle]),
             })
             .collect();
-        cells.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for (_, cell) in cells {
-            let value = 0.25 * cell.iter().map(|&a| plot.values[a]).sum::<f64>();
-            let colour = bar.colour(value);
-            let corners = cell.map(|a| place(project(&plot.positions[a])));
-            // The thin outline of the same colour hides the seams between cells.
-            let outline = Some(Stroke::solid(mix(colour, INK, 0.12), 0.5));
-            canvas.polygon(corners.to_vec(), colour, outline);
+        if shown.is_empty() {
+            return Err(nothing(&plot.title, "no particle lies in the section"));
+        }
+        dots.push(shown);
+    }
+    let (window, shows_undeformed) = window(plots, &dots);
+    let values = plots
+        .iter()
+        .zip(&dots)
+        .flat_map(|(plot, dots)| dots.iter().map(|dot| plot.values[dot.particle]));
+    let bar = ColourBar::new(first, values);
+    let titles: Vec<&str> = plots.iter().map(|plot| plot.title.as_str()).collect();
+    let panels = Panels::new(heading, &titles, first.view, window, &bar);
+    let mut canvas = Canvas::new(panels.size[0], panels.size[1]);
+    for (number, (plot, dots)) in plots.iter().zip(dots).enumerate() {
+        let panel = panels.panel(number);
+        let is_flat = plot.view.plane().is_some();
+        if !is_flat {
+            walls::draw(&mut canvas, plot, &panel);
+        }
+        draw_body(&mut canvas, plot, dots, &panel, &bar);
+        if is_flat {
+            walls::draw(&mut canvas, plot, &panel);
+        }
+        if shows_undeformed {
+            for line in &plot.undeformed {
+                walls::draw_line(&mut canvas, plot, line, &panel, UNDEFORMED);
+            }
         }
     }
-    for obstacle in &plot.obstacles {
-        let line: Vec<[f64; 2]> = obstacle.iter().map(|x| place(project(x))).collect();
-        for part in clip::polyline(&line, &layout.frame) {
-            canvas.polyline(part, Stroke::solid(STEEL, 2.0));
-        }
-    }
-    layout.draw_scale(&mut canvas, plot);
-    bar.draw(&mut canvas, &layout.frame);
-    draw_title(&mut canvas, &layout.frame, &plot.title);
+    panels.draw(&mut canvas);
+    bar.draw(&mut canvas, &panels.last_frame());
     Ok(canvas)
+}
+
+const UNDEFORMED: Stroke = Stroke {
+    colour: [138, 143, 150],
+    width: 1.1,
+    dashed: true,
+};
+
+fn draw_body(
+    canvas: &mut Canvas,
+    plot: &ParticlePlot,
+    mut dots: Vec<Dot>,
+    panel: &Panel,
+    bar: &ColourBar,
+) {
+    let shown = plot
+        .cells
+        .iter()
+        .filter(|cell| cell.iter().all(|&a| plot.is_shown(a)));
+    let cells: Vec<[usize; 4]> = shown.copied().collect();
+    let mut is_in_cell = vec![false; plot.positions.len()];
+    for &corner in cells.iter().flatten() {
+        is_in_cell[corner] = true;
+    }
+    dots.retain(|dot| !is_in_cell[dot.particle]);
+    draw_dots(canvas, plot, dots, panel, bar);
+    cells::draw(canvas, plot, &cells, panel, bar);
+    if plot.view.plane().is_some() {
+        for line in cells::outline(&cells) {
+            let line: Vec<Vec3> = line.iter().map(|&a| plot.positions[a]).collect();
+            walls::draw_line(canvas, plot, &line, panel, Stroke::solid(INK, 0.9));
+        }
+    }
 }
 
 fn draw_dots(
     canvas: &mut Canvas,
     plot: &ParticlePlot,
     mut dots: Vec<Dot>,
-    layout: &Layout,
+    panel: &Panel,
     bar: &ColourBar,
 ) {
     let nearest = dots.iter().map(|d| d.depth).fold(f64::MIN, f64::max);
     let farthest = dots.iter().map(|d| d.depth).fold(f64::MAX, f64::min);
     let is_deep = nearest - farthest > 1.5 * plot.spacing;
-    let radius = (0.52 * plot.spacing * layout.pixels_per_metre).max(0.7);
+    let radius = (0.52 * plot.spacing * panel.pixels_per_metre).max(0.7);
     // Stable, so that particles of one layer keep their order and pictures are reproducible.
     dots.sort_by(|a, b| a.depth.total_cmp(&b.depth));
     dots.reverse();
-    let centres: Vec<[f64; 2]> = dots.iter().map(|dot| layout.place(dot.place)).collect();
-    let is_visible = visible(&centres, radius, &layout.frame);
+    let centres: Vec<[f64; 2]> = dots.iter().map(|dot| panel.place(dot.place)).collect();
+    let is_visible = visible(&centres, radius, &panel.frame);
     for ((dot, centre), is_visible) in dots.iter().zip(centres).zip(is_visible).rev() {
-        if !is_visible || !layout.frame.contains(centre) {
+        if !is_visible || !panel.frame.contains(centre) {
             continue;
         }
-        let colour = bar.colour(dot.value);
+        let colour = bar.colour(plot.values[dot.particle]);
         if is_deep {
             // A rim and a highlight make balls of the dots, so that depth can be seen.
             let rim = Stroke::solid(mix(colour, INK, 0.45), (0.14 * radius).clamp(0.25, 1.0));
@@ -204,163 +238,78 @@ fn draw_dots(
     }
 }
 
-/// What the picture shows of the plane of view, m.
-fn window(plot: &ParticlePlot, dots: &[Dot]) -> [[f64; 2]; 2] {
-    if let Some(window) = plot.window {
-        return window;
+/// What the picture shows of the plane of view (m), and whether that includes the undeformed body.
+fn window(plots: &[ParticlePlot], dots: &[Vec<Dot>]) -> ([[f64; 2]; 2], bool) {
+    if let Some(window) = plots[0].window {
+        return (window, true);
     }
-    let mut lower = [f64::MAX; 2];
-    let mut upper = [f64::MIN; 2];
-    for dot in dots {
-        for i in 0..2 {
-            lower[i] = lower[i].min(dot.place[i]);
-            upper[i] = upper[i].max(dot.place[i]);
+    let mut body = Extent::default();
+    let mut both = Extent::default();
+    for (plot, dots) in plots.iter().zip(dots) {
+        for dot in dots {
+            body.add(dot.place);
+            both.add(dot.place);
+        }
+        for point in plot.undeformed.iter().flatten() {
+            both.add(plot.project(point));
         }
     }
-    let extent = (upper[0] - lower[0]).max(upper[1] - lower[1]);
-    let margin = plot.spacing + 0.04 * extent;
-    [lower.map(|x| x - margin), upper.map(|x| x + margin)]
-}
-
-/// Where everything goes.
-struct Layout {
-    size: [f64; 2],
-    frame: Rect,
-    /// Lower left corner of the frame, m.
-    origin: [f64; 2],
-    pixels_per_metre: f64,
-    /// Shown length units per metre, and the unit's name.
-    unit: (f64, &'static str),
-}
-
-impl Layout {
-    fn new(plot: &ParticlePlot, window: [[f64; 2]; 2], bar: &ColourBar) -> Self {
-        let [lower, upper] = window;
-        let mut extent: [f64; 2] = std::array::from_fn(|i| (upper[i] - lower[i]).max(1e-12));
-        let middle: [f64; 2] = std::array::from_fn(|i| 0.5 * (upper[i] + lower[i]));
-        let aspect = extent[0] / extent[1];
-        if aspect < ASPECT[0] {
-            extent[0] = ASPECT[0] * extent[1];
-        } else if aspect > ASPECT[1] {
-            extent[1] = extent[0] / ASPECT[1];
-        }
-        let pixels_per_metre = (LARGEST[0] / extent[0]).min(LARGEST[1] / extent[1]);
-        let [width, height] = extent.map(|e| e * pixels_per_metre);
-        let origin = std::array::from_fn(|i| middle[i] - 0.5 * extent[i]);
-
-        let largest = extent[0].max(extent[1]);
-        let unit = if largest < 2e-4 {
-            (1e6, "µm")
-        } else if largest < 1.0 {
-            (1e3, "mm")
-        } else {
-            (1.0, "m")
-        };
-        let mut layout = Self {
-            size: [0.0; 2],
-            frame: Rect {
-                left: MARGIN,
-                top: MARGIN + if plot.title.is_empty() { 0.0 } else { TITLE },
-                right: 0.0,
-                bottom: 0.0,
-            },
-            origin,
-            pixels_per_metre,
-            unit,
-        };
-        layout.frame.right = layout.frame.left + width;
-        layout.frame.bottom = layout.frame.top + height;
-        let mut below = DIRECTIONS;
-        if plot.view.plane().is_some() {
-            let left = layout.axes(["", ""]).left_space(height);
-            layout.frame.left += left;
-            layout.frame.right += left;
-            below = BELOW;
-        }
-        let title = text::width(&plot.title, TITLE_SIZE) + 2.0 * MARGIN;
-        layout.size = [
-            (layout.frame.right + colorbar::GAP + bar.space() + MARGIN).max(title),
-            layout.frame.bottom + below + MARGIN,
-        ];
-        layout
-    }
-
-    fn place(&self, point: [f64; 2]) -> [f64; 2] {
+    let spacing = plots[0].spacing;
+    let is_near = both.area(spacing) <= MOST_GROWTH * body.area(spacing);
+    let shown = if is_near { both } else { body };
+    let size = shown.size();
+    let margin = spacing + 0.04 * size[0].max(size[1]);
+    (
         [
-            self.frame.left + (point[0] - self.origin[0]) * self.pixels_per_metre,
-            self.frame.bottom - (point[1] - self.origin[1]) * self.pixels_per_metre,
-        ]
-    }
+            shown.lower.map(|x| x - margin),
+            shown.upper.map(|x| x + margin),
+        ],
+        is_near,
+    )
+}
 
-    fn axes<'a>(&self, labels: [&'a str; 2]) -> Axes<'a> {
-        let extent = [self.frame.width(), self.frame.height()];
-        let rulers = std::array::from_fn(|i| {
-            let lower = self.origin[i] * self.unit.0;
-            Ruler::linear(
-                lower,
-                lower + extent[i] / self.pixels_per_metre * self.unit.0,
-            )
-        });
-        Axes {
-            rulers,
-            labels,
-            grid: false,
+/// The smallest upright rectangle about some points.
+struct Extent {
+    lower: [f64; 2],
+    upper: [f64; 2],
+}
+
+impl Default for Extent {
+    fn default() -> Self {
+        Self {
+            lower: [f64::MAX; 2],
+            upper: [f64::MIN; 2],
+        }
+    }
+}
+
+impl Extent {
+    fn add(&mut self, point: [f64; 2]) {
+        for i in 0..2 {
+            self.lower[i] = self.lower[i].min(point[i]);
+            self.upper[i] = self.upper[i].max(point[i]);
         }
     }
 
-    /// Axes in a plane of coordinates; a scale bar and the directions of the axes otherwise.
-    fn draw_scale(&self, canvas: &mut Canvas, plot: &ParticlePlot) {
-        if let Some(plane) = plot.view.plane() {
-            let labels = plane.map(|axis| format!("{} ({})", axis.name(), self.unit.1));
-            let axes = self.axes([&labels[0], &labels[1]]);
-            axes.draw_above(canvas, &self.frame);
-            return;
-        }
-        self.draw_scale_bar(canvas);
-        let [right, up, _] = plot.view.frame();
-        let corner = [
-            self.frame.left + 34.0,
-            self.frame.bottom + DIRECTIONS - 22.0,
-        ];
-        for axis in [Axis::X, Axis::Y, Axis::Z] {
-            let direction = axis.direction();
-            let toward = [right.dot(&direction), -up.dot(&direction)];
-            let tip = std::array::from_fn(|i| corner[i] + 24.0 * toward[i]);
-            canvas.line(corner, tip, Stroke::solid(INK, 1.3));
-            let at = [
-                corner[0] + 33.0 * toward[0],
-                corner[1] + 33.0 * toward[1] + HALF_HEIGHT * TICK_SIZE,
-            ];
-            canvas.text(at, TICK_SIZE, Anchor::Middle, axis.name());
-        }
+    fn size(&self) -> [f64; 2] {
+        std::array::from_fn(|i| self.upper[i] - self.lower[i])
     }
 
-    fn draw_scale_bar(&self, canvas: &mut Canvas) {
-        let shown = self.frame.width() / self.pixels_per_metre * self.unit.0;
-        // The longest round length within a quarter of the picture.
-        let power = 10_f64.powf((0.25 * shown).log10().floor());
-        let length = [5.0, 2.0, 1.0]
-            .map(|multiple| multiple * power)
-            .into_iter()
-            .find(|length| *length <= 0.25 * shown)
-            .unwrap_or(power);
-        let pixels = length / self.unit.0 * self.pixels_per_metre;
-        let (right, y) = (
-            self.frame.right - 8.0,
-            self.frame.bottom + DIRECTIONS - 22.0,
-        );
-        let stroke = Stroke::solid(INK, 2.0);
-        canvas.line([right - pixels, y], [right, y], stroke);
-        let at = [right - 0.5 * pixels, y - 7.0];
-        let label = format!("{length} {}", self.unit.1);
-        canvas.text(at, TICK_SIZE, Anchor::Middle, &label);
+    /// With a border of half a spacing, so that a single line of particles has an area.
+    fn area(&self, spacing: f64) -> f64 {
+        self.size().iter().map(|size| size + spacing).product()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plot::Axis;
     use crate::plot::canvas::{Colour, Shape};
+
+    fn draw(plot: &ParticlePlot) -> Result<Canvas, OutputError> {
+        super::draw("", std::slice::from_ref(plot))
+    }
 
     fn circles(canvas: &Canvas) -> Vec<([f64; 2], f64, Colour)> {
         canvas
@@ -432,9 +381,10 @@ mod tests {
         plot.cells = &cells;
         let middle = plot.colours.at(0.5);
         let canvas = draw(&plot).unwrap();
-        let filled = canvas.shapes.iter().filter(|shape| {
-            matches!(shape, Shape::Polygon { fill, outline: Some(_), .. } if *fill == middle)
-        });
+        let filled = canvas
+            .shapes
+            .iter()
+            .filter(|shape| matches!(shape, Shape::Patch { fill, .. } if *fill == middle));
         assert_eq!(filled.count(), 1);
         plot.section = Some(Section {
             axis: Axis::Z,
@@ -464,5 +414,69 @@ mod tests {
             draw(&[1.0, f64::NAN]),
             OutputError::NotFinite { index: 1, .. }
         ));
+    }
+
+    #[test]
+    fn particles_of_no_cell_are_dots() {
+        let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [2.0, 0.0]];
+        let positions = square.map(|[x, y]| Vec3::new(x, y, 0.0));
+        let plot = ParticlePlot {
+            cells: &[[0, 1, 2, 3]],
+            ..ParticlePlot::new(&positions, &[0.0, 1.0, 2.0, 3.0, 9.0], "q", "", 1.0)
+        };
+        let canvas = draw(&plot).unwrap();
+        let dots = circles(&canvas);
+        assert_eq!(dots.len(), 1);
+        assert_eq!(dots[0].2, plot.colours.at(1.0));
+        let patches = canvas
+            .shapes
+            .iter()
+            .filter(|shape| matches!(shape, Shape::Patch { .. }));
+        // The cell is cut into many pieces of different colours.
+        assert!(patches.count() > 100);
+    }
+
+    #[test]
+    fn panels_share_scale_and_colours() {
+        let small = [Vec3::zeros(), Vec3::new(1.0, 1.0, 0.0)];
+        let large = [Vec3::zeros(), Vec3::new(2.0, 1.0, 0.0)];
+        let plots = [
+            ParticlePlot::new(&small, &[0.0, 1.0], "q", "", 0.1),
+            ParticlePlot::new(&large, &[0.0, 4.0], "q", "", 0.1),
+        ];
+        let canvas = super::draw("heading", &plots).unwrap();
+        let [a, b, c, d] = circles(&canvas)[..] else {
+            panic!("four dots")
+        };
+        let (first, second) = (b.0[0] - a.0[0], d.0[0] - c.0[0]);
+        assert!((second - 2.0 * first).abs() < 1e-9, "{first} {second}");
+        assert_eq!(a.0[1], c.0[1]);
+        assert_eq!(b.2, plots[0].colours.at(0.25));
+        assert_eq!(d.2, plots[0].colours.at(1.0));
+        assert!(matches!(
+            super::draw("none", &[]),
+            Err(OutputError::NothingToDraw { .. })
+        ));
+    }
+
+    #[test]
+    fn the_undeformed_body_is_shown_unless_it_is_far_away() {
+        let positions = [Vec3::zeros(), Vec3::new(1.0, 1.0, 0.0)];
+        let dashed = |shift: f64| {
+            let plot = ParticlePlot {
+                undeformed: vec![vec![
+                    Vec3::new(0.0, shift, 0.0),
+                    Vec3::new(1.0, shift + 1.0, 0.0),
+                ]],
+                ..ParticlePlot::new(&positions, &[0.0, 1.0], "q", "", 0.1)
+            };
+            let canvas = draw(&plot).unwrap();
+            let lines = canvas.shapes.iter();
+            lines
+                .filter(|shape| matches!(shape, Shape::Polyline { stroke, .. } if stroke.dashed))
+                .count()
+        };
+        assert_eq!(dashed(0.5), 1);
+        assert_eq!(dashed(5.0), 0);
     }
 }

@@ -56,6 +56,17 @@ fn draw(pixels: &mut Pixmap, shape: &Shape) {
             fill,
             outline,
         } => draw_path(pixels, polygon(points, true), Some(*fill), *outline),
+        Shape::Patch { points, fill } => {
+            if let Some(path) = polygon(points, true) {
+                // Without anti-aliasing a pixel belongs to exactly one of two neighbours.
+                let paint = Paint {
+                    anti_alias: false,
+                    ..paint(*fill)
+                };
+                let scale = Transform::from_scale(SCALE, SCALE);
+                pixels.fill_path(&path, &paint, FillRule::Winding, scale, None);
+            }
+        }
         Shape::Polyline { points, stroke } => {
             draw_path(pixels, polygon(points, false), None, Some(*stroke));
         }

@@ -36,6 +36,15 @@ fn draw(svg: &mut String, shape: &Shape) -> std::fmt::Result {
             write!(svg, "<path d=\"{}Z\" fill=\"{fill}\"", path(points))?;
             write_outline(svg, *outline)
         }
+        Shape::Patch { points, fill } => {
+            // The stroke hides the seams that viewers leave between neighbours.
+            let fill = hex(*fill);
+            writeln!(
+                svg,
+                "<path d=\"{}Z\" fill=\"{fill}\" stroke=\"{fill}\" stroke-width=\"0.4\"/>",
+                path(points)
+            )
+        }
         Shape::Polyline { points, stroke } => {
             write!(svg, "<path d=\"{}\" fill=\"none\"", path(points))?;
             write_outline(svg, Some(*stroke))
