@@ -5,7 +5,10 @@
 use crate::{assert_within, run};
 
 fn block(counts: &str) -> crate::Finished {
-    run("constrained-block", &[("body.block.lattice.counts", counts), ("time.end", "15 ms")])
+    run(
+        "constrained-block",
+        &[("body.block.lattice.counts", counts), ("time.end", "15 ms")],
+    )
 }
 
 #[test]

@@ -16,8 +16,14 @@ fn the_billet_goes_round_both_turns_inside_the_die() {
     assert_eq!(defects.inverted, 0);
 
     let die = &finished.case.model.obstacles[0].obstacle.surface;
-    let deepest = position.iter().map(|x| die.gap(x).distance).fold(f64::INFINITY, f64::min);
-    assert!(deepest > -1e-3 * body.spacing, "a particle is {deepest} m inside the die");
+    let deepest = position
+        .iter()
+        .map(|x| die.gap(x).distance)
+        .fold(f64::INFINITY, f64::min);
+    assert!(
+        deepest > -1e-3 * body.spacing,
+        "a particle is {deepest} m inside the die"
+    );
 
     // Middle half of the middle channel; 8 % above theory because the punch side of a coarse billet
     // cannot follow the fillets.
@@ -28,8 +34,15 @@ fn the_billet_goes_round_both_turns_inside_the_die() {
         .map(|(_, strain)| *strain)
         .collect();
     strains.sort_by(f64::total_cmp);
-    assert_within("median strain after one turn", strains[strains.len() / 2], 1.05..=1.35);
-    assert!(position.iter().any(|x| x.y < -5e-3), "the billet has left the second turn");
+    assert_within(
+        "median strain after one turn",
+        strains[strains.len() / 2],
+        1.05..=1.35,
+    );
+    assert!(
+        position.iter().any(|x| x.y < -5e-3),
+        "the billet has left the second turn"
+    );
 
     assert_eq!(finished.energies.numerical, 0.0);
     assert_eq!(finished.energies.hourglass, 0.0);

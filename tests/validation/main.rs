@@ -28,23 +28,34 @@ impl Finished {
     }
 
     fn largest_plastic_strain(&self) -> f64 {
-        self.fields.equivalent_plastic_strain.iter().copied().fold(0.0, f64::max)
+        self.fields
+            .equivalent_plastic_strain
+            .iter()
+            .copied()
+            .fold(0.0, f64::max)
     }
 }
 
 /// Runs `cases/<name>.toml` with overrides to its end.
 fn run(name: &str, overrides: &[(&str, &str)]) -> Finished {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../cases/{name}.toml"));
-    let overrides: Vec<(String, String)> =
-        overrides.iter().map(|(key, value)| ((*key).into(), (*value).into())).collect();
+    let overrides: Vec<(String, String)> = overrides
+        .iter()
+        .map(|(key, value)| ((*key).into(), (*value).into()))
+        .collect();
     let case = jstsph_case::load(&path, &overrides).unwrap_or_else(|error| panic!("{error}"));
     let end = case.time.end;
     let model = case.model.clone();
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread pool");
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .build()
+        .expect("a thread pool");
     let simulation = pool.install(|| {
         let mut simulation = Simulation::new(model).unwrap_or_else(|error| panic!("{error}"));
         while simulation.time() < end {
-            simulation.advance_step(end).unwrap_or_else(|error| panic!("{error}"));
+            simulation
+                .advance_step(end)
+                .unwrap_or_else(|error| panic!("{error}"));
         }
         simulation
     });
@@ -59,5 +70,8 @@ fn run(name: &str, overrides: &[(&str, &str)]) -> Finished {
 /// Fails with the number and the range when it is outside.
 #[track_caller]
 fn assert_within(what: &str, value: f64, range: std::ops::RangeInclusive<f64>) {
-    assert!(range.contains(&value), "{what} is {value:.6e}, expected {range:?}");
+    assert!(
+        range.contains(&value),
+        "{what} is {value:.6e}, expected {range:?}"
+    );
 }

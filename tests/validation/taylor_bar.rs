@@ -4,7 +4,10 @@
 use crate::{assert_within, run};
 
 fn bar(per_radius: usize) -> crate::Finished {
-    let lattice = format!("{{ per_radius = {per_radius}, layers = {} }}", 10 * per_radius + 1);
+    let lattice = format!(
+        "{{ per_radius = {per_radius}, layers = {} }}",
+        10 * per_radius + 1
+    );
     run("taylor-bar", &[("body.bar.lattice", &lattice)])
 }
 
@@ -15,24 +18,41 @@ fn radius_and_length_are_those_of_the_literature_without_any_dissipation() {
     // 2 % beside the converged radius; the bar of the case is 0.4 mm shorter than that of the length.
     assert_within("radius, m", fine.probe("base_radius"), 7.08e-3..=7.36e-3);
     assert_within("length, m", fine.probe("length"), 21.0e-3..=21.5e-3);
-    assert_within("largest plastic strain", fine.largest_plastic_strain(), 2.5..=3.6);
+    assert_within(
+        "largest plastic strain",
+        fine.largest_plastic_strain(),
+        2.5..=3.6,
+    );
     let change = coarse.probe("base_radius") / fine.probe("base_radius") - 1.0;
-    assert_within("change of radius from 273 to 899 particles", change, -0.04..=0.04);
+    assert_within(
+        "change of radius from 273 to 899 particles",
+        change,
+        -0.04..=0.04,
+    );
 
     for finished in [&coarse, &fine] {
         let energies = &finished.energies;
         assert_eq!(energies.numerical, 0.0);
         assert_eq!(energies.hourglass, 0.0);
         // Of the initial kinetic energy. The plastic work of a step is taken at its end: first order in dt.
-        assert_within("balance", energies.error() / energies.initial, -0.005..=0.005);
+        assert_within(
+            "balance",
+            energies.error() / energies.initial,
+            -0.005..=0.005,
+        );
     }
 }
 
 #[test]
 fn nothing_is_below_the_wall() {
     let finished = bar(2);
-    let lowest =
-        finished.simulation.state().position.iter().map(|x| x.z).fold(f64::INFINITY, f64::min);
+    let lowest = finished
+        .simulation
+        .state()
+        .position
+        .iter()
+        .map(|x| x.z)
+        .fold(f64::INFINITY, f64::min);
     let spacing = finished.simulation.reference().bodies[0].spacing;
     assert!(lowest > -1e-3 * spacing, "lowest particle at {lowest} m");
 }

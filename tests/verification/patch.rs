@@ -140,7 +140,7 @@ fn homogeneous_deformation_gives_its_stress_and_the_exact_traction_response() {
                 rotation() * stretch(),
                 rotation() * shear(),
             ] {
-                // A projection takes out the torque that a dead traction of a sheared body has.
+                // Without the projection: the operator itself is on trial.
                 let simulation = one_step_after(
                     &f,
                     &body,
@@ -196,7 +196,7 @@ fn affine_motion_of_the_outside_is_the_motion_of_the_inside() {
                 let rate =
                     rate * (0.5 * material.wave_speeds().pressure / (0.5 * steps as f64 / 16.0));
                 let velocity = move |x: &Vec3| rate * x;
-                // No projection: held layers feel forces whose torque is not zero.
+                // Without the projection: the operator itself is on trial.
                 let scheme = Scheme {
                     integrator,
                     projection: false,

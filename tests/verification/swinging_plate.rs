@@ -188,8 +188,8 @@ fn tributary_volumes_as_weights_are_first_order() {
     study.assert_order("stress", 0.4..0.6);
 }
 
-/// The published U0 = 5e-4 m adds the errors of a nonlinear material to those of the scheme; they
-/// halve with U0, and at 1e-6 m nothing is left of them.
+/// The published U0 = 5e-4 m adds the errors of a nonlinear material, of first order in U0, to those
+/// of the scheme; at 1e-6 m nothing is left of them: halving it changes no error.
 #[test]
 fn amplitude_of_the_study_is_in_the_linear_range() {
     let errors = |amplitude| problem(40, 0.3, amplitude, setup::particles(0.9)).errors_after(0.625);

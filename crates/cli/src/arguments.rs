@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use jstsph_case::units::{Measure, UnitError, parse_quantity};
 
 /// Total Lagrangian SPH for metals under extreme deformation.
 #[derive(Debug, Parser)]
@@ -23,6 +24,8 @@ pub(crate) enum Command {
     Run(RunOptions),
     /// Check a case and say what would run; writes nothing
     Check(CheckOptions),
+    /// Draw the results of a run: the body coloured by a field, or curves over time
+    Plot(PlotOptions),
     /// List what can be written in a case file: materials, kernels, shapes, units, ...
     List {
         /// Which list; without it, the lists there are
@@ -49,6 +52,9 @@ pub(crate) struct RunOptions {
     /// Override a key of the case, e.g. time.end="10 ms" or body.billet.lattice.counts=[4,22]; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
     pub(crate) overrides: Vec<(String, String)>,
+    /// Do not draw final.png and energies.png at the end
+    #[arg(long)]
+    pub(crate) no_pictures: bool,
     /// Print mistakes only
     #[arg(long)]
     pub(crate) quiet: bool,
@@ -76,6 +82,86 @@ pub(crate) struct CheckOptions {
     pub(crate) resolved: bool,
 }
 
+/// Options of `plot`.
+#[derive(Debug, Args)]
+pub(crate) struct PlotOptions {
+    /// Folder with the results of a run
+    #[arg(value_name = "OUT_DIR")]
+    pub(crate) results: PathBuf,
+    /// Field, component (velocity_y, cauchy_stress_xy) or magnitude (velocity) to colour the body by [default: equivalent_plastic_strain]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) field: Option<String>,
+    /// Time such as "40 ms", first or last; several, separated by commas, are drawn side by side [default: last]
+    #[arg(long = "time", value_name = "TIME", value_delimiter = ',')]
+    pub(crate) times: Vec<String>,
+    #[command(flatten)]
+    pub(crate) look: Look,
+    /// Draw curves over time instead: energies, balance, time_step, probes, or columns of history.csv separated by commas
+    #[arg(long, value_name = "WHAT", conflicts_with_all = ["field", "times", "range", "view", "section"])]
+    pub(crate) history: Option<String>,
+    /// File to write, .png or .svg [default: OUT_DIR/NAME-TIME.png]
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+/// How a body is shown.
+#[derive(Debug, Default, Args)]
+pub(crate) struct Look {
+    /// Values of the first and the last colour, in SI units or with a unit: 0,0.5 or "0 MPa,400 MPa" [default: those of the field]
+    #[arg(long, value_name = "FROM,TO", value_parser = value_range, allow_hyphen_values = true)]
+    pub(crate) range: Option<ValueRange>,
+    /// Direction of view [default: xy in plane strain; a solid is cut through its middle]
+    #[arg(long, value_enum)]
+    pub(crate) view: Option<ViewName>,
+    /// Cut a solid through its middle
+    #[arg(long)]
+    pub(crate) section: bool,
+}
+
+/// Plane of the picture, first axis to the right, second up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ViewName {
+    /// Seen against z
+    Xy,
+    /// Seen along y
+    Xz,
+    /// Seen against x
+    Yz,
+    /// From above and aside
+    Oblique,
+}
+
+/// Two values with the dimension of their unit, if they have one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ValueRange {
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+    pub(crate) measures: [Option<Measure>; 2],
+}
+
+fn value_range(text: &str) -> Result<ValueRange, String> {
+    let value = |text: &str| match parse_quantity(text) {
+        Ok((value, measure)) => Ok((value, Some(measure))),
+        Err(UnitError::NoUnit { number, .. }) => number
+            .parse()
+            .map(|value| (value, None))
+            .map_err(|_| format!("`{number}` is not a number")),
+        Err(error) => Err(error.to_string()),
+    };
+    let (from, to) = text
+        .split_once(',')
+        .ok_or("write two values with a comma between, e.g. 0,0.5")?;
+    let [(from, first), (to, second)] = [value(from)?, value(to)?];
+    if from >= to {
+        return Err("the first value must be smaller than the second".to_owned());
+    }
+    Ok(ValueRange {
+        from,
+        to,
+        measures: [first, second],
+    })
+}
+
 fn key_value(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((key, value)) if !key.trim().is_empty() => {
@@ -93,6 +179,16 @@ mod tests {
     #[test]
     fn the_command_line_is_consistent() {
         Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn ranges_are_two_ascending_values_with_or_without_unit() {
+        let range = value_range("-1 MPa, 2e6").expect("a range");
+        assert_eq!((range.from, range.to), (-1e6, 2e6));
+        assert_eq!(range.measures, [Some(Measure::STRESS), None]);
+        for wrong in ["1", "2,1", "a,b", "1 Mpa,2 MPa"] {
+            assert!(value_range(wrong).is_err(), "{wrong}");
+        }
     }
 
     #[test]

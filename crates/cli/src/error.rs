@@ -47,6 +47,57 @@ pub(crate) enum CliError {
         /// What does not fit.
         reason: String,
     },
+    /// A picture cannot be drawn or written, or results cannot be read for it.
+    #[error(transparent)]
+    Picture(OutputError),
+    /// A picture of a format that we do not write.
+    #[error("cannot draw {}: the name of a picture ends with .png or .svg", path.display())]
+    PictureFormat {
+        /// File asked for.
+        path: PathBuf,
+    },
+    /// A results folder without frames.
+    #[error("{} has no frames (frames/frames.pvd); give the folder of a run", path.display())]
+    NoFrames {
+        /// Folder.
+        path: PathBuf,
+    },
+    /// A frame and the case beside it do not belong together.
+    #[error(
+        "the frame has {found} particles, but case.toml describes {expected}: they are of different runs"
+    )]
+    ForeignFrame {
+        /// Particles of the frame.
+        found: usize,
+        /// Particles of the case.
+        expected: usize,
+    },
+    /// A time at which there is nothing to draw.
+    #[error(
+        "time `{text}`: {reason}\n = there are {count} frames from {first} to {last}; write a time with unit, first or last"
+    )]
+    BadTime {
+        /// What was asked for.
+        text: String,
+        /// What is wrong with it.
+        reason: String,
+        /// Number of frames.
+        count: usize,
+        /// Time of the first frame.
+        first: String,
+        /// Time of the last frame.
+        last: String,
+    },
+    /// The ends of a colour range have another unit than the field.
+    #[error("the range of `{field}` is given as {found}, but the field's unit is {unit}")]
+    RangeUnit {
+        /// Field.
+        field: String,
+        /// Dimension of the range.
+        found: String,
+        /// SI unit of the field.
+        unit: String,
+    },
     /// Threads cannot be started.
     #[error("cannot start {threads} threads: {reason}; give a smaller number with --threads")]
     Threads {

@@ -23,6 +23,7 @@ mod console;
 mod error;
 mod interrupt;
 mod list;
+mod plot;
 mod progress;
 mod recorder;
 mod restart;
@@ -79,6 +80,7 @@ where
     let result = match parsed.command {
         Command::Run(options) => simulate::run(&options, &words, &mut console, interrupted),
         Command::Check(options) => check::run(&options, &mut console),
+        Command::Plot(options) => plot::run(&options, &mut console),
         Command::List { what } => list::run(what.as_deref(), &mut console),
         Command::New { name } => templates::run(name.as_deref(), &mut console),
     };

@@ -15,6 +15,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use crate::arguments::RunOptions;
 use crate::console::Console;
 use crate::error::CliError;
+use crate::plot;
 use crate::progress::Progress;
 use crate::recorder::{Recorder, energies, extra_columns, extremes, probe_values};
 use crate::restart::{LastRow, decode};
@@ -168,12 +169,18 @@ impl Job<'_> {
         if outcome.is_err() {
             summary.warnings.push(reason.clone());
         }
+        let pictures = self.draw(&folder, &mut summary);
         summary.write(folder.path()).map_err(writing)?;
         record.finish(wall, reason.clone());
         record.write(folder.path()).map_err(writing)?;
         folder.log(&reason).map_err(writing)?;
         if !self.options.quiet {
-            console.print(verdict::verdict(&summary, self.columns, folder.path()));
+            console.print(verdict::verdict(
+                &summary,
+                self.columns,
+                folder.path(),
+                &pictures,
+            ));
             if status == Status::Interrupted {
                 console.print(format_args!("  {reason}\n"));
             }
@@ -294,6 +301,17 @@ impl Job<'_> {
             }
         }
         Ok(End::Completed)
+    }
+
+    /// Draws the end of the run; a picture that cannot be drawn is no reason to fail.
+    fn draw(&self, folder: &ResultsFolder, summary: &mut Summary) -> Vec<PathBuf> {
+        if self.options.no_pictures {
+            return Vec::new();
+        }
+        plot::after_run(self.case, folder.path()).unwrap_or_else(|error| {
+            summary.warnings.push(format!("no pictures: {error}"));
+            Vec::new()
+        })
     }
 
     #[expect(clippy::cast_precision_loss, reason = "counts are far below 2^53")]

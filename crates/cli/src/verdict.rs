@@ -1,7 +1,7 @@
 //! The last words of a run, and numbers for people.
 
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use jstsph_output::{Status, Summary};
 
@@ -39,7 +39,12 @@ pub(crate) fn duration(wall: f64) -> String {
 }
 
 /// What came out, what looks wrong, and what to do next.
-pub(crate) fn verdict(summary: &Summary, columns: &[String], folder: &Path) -> String {
+pub(crate) fn verdict(
+    summary: &Summary,
+    columns: &[String],
+    folder: &Path,
+    pictures: &[PathBuf],
+) -> String {
     let mut text = String::new();
     let status = match summary.status {
         Status::Completed => "completed",
@@ -104,6 +109,25 @@ pub(crate) fn verdict(summary: &Summary, columns: &[String], folder: &Path) -> S
         "  results in {}; open {} in ParaView",
         folder.display(),
         frames.display()
+    );
+    if !pictures.is_empty() {
+        let names: Vec<String> = pictures
+            .iter()
+            .filter_map(|path| path.file_name())
+            .map(|name| name.to_string_lossy().into_owned())
+            .collect();
+        let _ = writeln!(text, "  pictures in it: {}", names.join(", "));
+    }
+    let folder = folder.display().to_string();
+    // As it can be pasted into a shell.
+    let folder = if folder.contains(char::is_whitespace) {
+        format!("'{folder}'")
+    } else {
+        folder
+    };
+    let _ = writeln!(
+        text,
+        "  next: jstsph plot {folder} --field von_mises_stress --time first,last"
     );
     text
 }

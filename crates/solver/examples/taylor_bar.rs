@@ -26,9 +26,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         height: 32e-3,
     };
     let layers = 10 * per_radius + 1;
-    let lattice = Lattice::Cubic { spacing: Spacing::Radial { per_radius, layers } };
+    let lattice = Lattice::Cubic {
+        spacing: Spacing::Radial { per_radius, layers },
+    };
     let body = build_body(shape, lattice, Dimension::Solid)?;
-    let base = face_nodes(&body, "base")?;
     let rim = face_nodes(&body, "rim_base")?;
     let everything: Vec<u32> = (0..body.positions.len() as u32).collect();
     let copper = library()
@@ -44,25 +45,39 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             material: copper.spec.clone(),
             body_force: None,
         }],
-        conditions: if std::env::var("HOLD").is_ok() { vec![jstsph_solver::Condition { name: "base".into(), body: 0, particles: base, kind: jstsph_solver::ConditionKind::Velocity([None, None, Some(jstsph_solver::Signal::Constant(0.0))]) }] } else { vec![] },
+        conditions: vec![],
         obstacles: vec![ModelObstacle {
             obstacle: Obstacle {
                 name: "wall".into(),
-                surface: Surface::Plane { point: Vec3::zeros(), normal: Vec3::z() },
+                surface: Surface::Plane {
+                    point: Vec3::zeros(),
+                    normal: Vec3::z(),
+                },
                 law: Law::Inelastic { restitution: 0.0 },
             },
             velocity: None,
         }],
         scheme: Scheme {
-            quadrature: if bonds { Quadrature::Bonds } else { Quadrature::Particles },
+            quadrature: if bonds {
+                Quadrature::Bonds
+            } else {
+                Quadrature::Particles
+            },
             kernel: Kernel::QuinticSpline,
             smoothing_ratio: if bonds { 0.8 } else { 1.2 },
-            smoothing_reference: if bonds { SmoothingReference::Spacing } else { SmoothingReference::Volume },
+            smoothing_reference: if bonds {
+                SmoothingReference::Spacing
+            } else {
+                SmoothingReference::Volume
+            },
             weights: Weights::Interpolation,
             formulation: Formulation::MomentumGradientCofactorJacobian,
             integrator: Integrator::Leapfrog,
             cfl,
-            stabilisation: Stabilisation { upwind: if bonds { 0.0 } else { 0.15 }, ..Default::default() },
+            stabilisation: Stabilisation {
+                upwind: if bonds { 0.0 } else { 0.15 },
+                ..Default::default()
+            },
             projection: !bonds,
             smallest_time_step: 1e-6,
         },
@@ -70,9 +85,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let probes = [
         Probe {
             name: "base_radius".into(),
-            kind: ProbeKind::Radius { particles: rim, point: Vec3::zeros(), axis: 2 },
+            kind: ProbeKind::Radius {
+                particles: rim,
+                point: Vec3::zeros(),
+                axis: 2,
+            },
         },
-        Probe { name: "length".into(), kind: ProbeKind::Extent { particles: everything, axis: 2 } },
+        Probe {
+            name: "length".into(),
+            kind: ProbeKind::Extent {
+                particles: everything,
+                axis: 2,
+            },
+        },
     ];
     let mut simulation = Simulation::new(model)?;
     let reference = simulation.reference();
@@ -91,13 +116,23 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let seconds = clock.elapsed().as_secs_f64();
     let fields = simulation.particle_fields();
     for probe in &probes {
-        println!("{} = {:.4} mm", probe.name, 1e3 * simulation.probe(probe, &fields)[0]);
+        println!(
+            "{} = {:.4} mm",
+            probe.name,
+            1e3 * simulation.probe(probe, &fields)[0]
+        );
     }
-    for a in 0..simulation.reference().position.len() { let x = simulation.reference().position[a]; if x.z == 0.0 && x.norm() > 2.8e-3*(3.0f64/3.0) { let y = simulation.state().position[a]; println!("{:.3} {:.3} | {:.4} {:.4} {:.5} r {:.4}", x.x*1e3, x.y*1e3, y.x*1e3, y.y*1e3, y.z*1e3, (y.x*y.x+y.y*y.y).sqrt()*1e3); } }
-    let largest = fields.equivalent_plastic_strain.iter().copied().fold(0.0, f64::max);
+    let largest = fields
+        .equivalent_plastic_strain
+        .iter()
+        .copied()
+        .fold(0.0, f64::max);
     let energies = simulation.energies();
     println!("largest plastic strain {largest:.3}, energies {energies:?}");
-    println!("balance {:.5} of the initial energy", energies.error() / energies.initial);
+    println!(
+        "balance {:.5} of the initial energy",
+        energies.error() / energies.initial
+    );
     let steps = simulation.step_count() as f64;
     println!(
         "{steps} steps in {seconds:.2} s: {:.0} ns per point and step",

@@ -36,7 +36,9 @@ impl Prescribed {
 
     /// Names, in the order of the impulses of the ledger.
     pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
-        self.conditions.iter().map(|condition| condition.name.as_str())
+        self.conditions
+            .iter()
+            .map(|condition| condition.name.as_str())
     }
 
     /// Number of conditions.
@@ -55,7 +57,9 @@ impl Prescribed {
         ledger: &mut Ledger,
     ) {
         for (k, condition) in self.conditions.iter().enumerate() {
-            let ConditionKind::Velocity(components) = &condition.kind else { continue };
+            let ConditionKind::Velocity(components) = &condition.kind else {
+                continue;
+            };
             let body = &reference.bodies[condition.body];
             let mut total = Vec3::zeros();
             for &particle in &condition.particles {

@@ -13,7 +13,11 @@ impl Biharmonic {
     pub(crate) fn at(&self, plastic_strain: f64) -> f64 {
         match *self {
             Self::Constant(coefficient) => coefficient,
-            Self::FallingWithPlasticStrain { initial, last, strain } => {
+            Self::FallingWithPlasticStrain {
+                initial,
+                last,
+                strain,
+            } => {
                 let fraction = (plastic_strain / strain).min(1.0);
                 initial + (last - initial) * fraction
             }
@@ -67,7 +71,9 @@ fn apply_jst(
     work: &mut Workspace,
 ) {
     for body in &reference.bodies {
-        let Some(operator) = &body.laplacian else { continue };
+        let Some(operator) = &body.laplacian else {
+            continue;
+        };
         let range = body.particles.clone();
         let harmonic = jst.harmonic * body.wave_speed * body.spacing;
         let biharmonic = body.wave_speed * body.spacing.powi(3);
@@ -115,7 +121,10 @@ fn add_upwind(upwind: f64, reference: &Reference, state: &State, work: &mut Work
         let Some(pairs) = &body.pairs else { continue };
         let range = body.particles.clone();
         let gradient = &work.particle_velocity_gradient[range.clone()];
-        let (momentum, start) = (&state.momentum[range.clone()], &reference.position[range.clone()]);
+        let (momentum, start) = (
+            &state.momentum[range.clone()],
+            &reference.position[range.clone()],
+        );
         let factor = upwind * body.wave_speed * body.spacing;
         let half_density = 0.5 * body.density;
         parallel::for_each(&mut work.dissipation[range], |a, dissipation| {

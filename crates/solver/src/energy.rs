@@ -59,7 +59,11 @@ impl Energies {
     #[must_use]
     pub fn balance(&self) -> f64 {
         let largest = self.largest();
-        if largest > 0.0 { self.error() / largest } else { 0.0 }
+        if largest > 0.0 {
+            self.error() / largest
+        } else {
+            0.0
+        }
     }
 }
 
@@ -71,7 +75,7 @@ pub struct PaperEnergies {
     pub internal: f64,
     /// (4.1b): Σ V J ‖σ‖ Δε_p, J per step.
     pub plastic: f64,
-    /// (4.1c): Σ V Δt/ρ |D(p)|, J m s⁻¹... of the paper's form; in norm because D is a vector.
+    /// (4.1c): Σ V Δt/ρ |D(p)|, as printed not an energy (N s m³/kg); in norm because D is a vector.
     pub jst: f64,
 }
 
@@ -108,7 +112,12 @@ impl Simulation {
         let coefficient = self.scheme.stabilisation.hourglass;
         Energies {
             kinetic,
-            elastic: stress::elastic_energy(self.strains(), reference, &self.state, &self.materials),
+            elastic: stress::elastic_energy(
+                self.strains(),
+                reference,
+                &self.state,
+                &self.materials,
+            ),
             plastic: parallel::sum(reference.point_volume.len(), 0.0, |q| {
                 reference.point_volume[q] * self.ledger.plastic_dissipation[q]
             }),
@@ -130,7 +139,11 @@ impl Simulation {
         let (reference, work) = (&self.reference, &self.work);
         let per_particle = |force: &[Vec3], weighted: bool| {
             parallel::sum(force.len(), 0.0, |a| {
-                let speed = if weighted { self.state.momentum[a].norm() } else { 1.0 };
+                let speed = if weighted {
+                    self.state.momentum[a].norm()
+                } else {
+                    1.0
+                };
                 reference.volume[a] * self.dt / reference.density[a] * speed * force[a].norm()
             })
         };
@@ -141,7 +154,8 @@ impl Simulation {
                 work.scaled_stress[q] * self.state.deformation_gradient[q].transpose() / volume;
             let equivalent = jstsph_tensor::von_mises(&kirchhoff);
             if work.plastic_work[q] > 0.0 && equivalent > 0.0 {
-                volume * double_dot(&kirchhoff, &kirchhoff).sqrt() * work.plastic_work[q] / equivalent
+                volume * double_dot(&kirchhoff, &kirchhoff).sqrt() * work.plastic_work[q]
+                    / equivalent
             } else {
                 0.0
             }
@@ -160,7 +174,9 @@ impl Simulation {
         let (reference, state) = (&self.reference, &self.state);
         let count = reference.position.len();
         Momenta {
-            linear: parallel::sum(count, Vec3::zeros(), |a| state.momentum[a] * reference.volume[a]),
+            linear: parallel::sum(count, Vec3::zeros(), |a| {
+                state.momentum[a] * reference.volume[a]
+            }),
             angular: parallel::sum(count, Vec3::zeros(), |a| {
                 state.position[a].cross(&state.momentum[a]) * reference.volume[a]
             }),
@@ -189,13 +205,20 @@ impl Simulation {
     /// Impulse that each prescribed velocity has given to its particles so far, N s, by name.
     #[must_use]
     pub fn condition_impulses(&self) -> Vec<(&str, Vec3)> {
-        self.prescribed.names().zip(self.ledger.condition_impulse.iter().copied()).collect()
+        self.prescribed
+            .names()
+            .zip(self.ledger.condition_impulse.iter().copied())
+            .collect()
     }
 
     /// How often a particle was put back onto an obstacle's surface.
     #[must_use]
     pub fn position_corrections(&self) -> u64 {
-        self.ledger.contact.iter().map(|slot| u64::from(slot.corrections)).sum()
+        self.ledger
+            .contact
+            .iter()
+            .map(|slot| u64::from(slot.corrections))
+            .sum()
     }
 }
 

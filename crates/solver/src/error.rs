@@ -38,77 +38,39 @@ pub enum SolverError {
         what: String,
     },
     /// A material point left the range of the constitutive model.
-    #[error(
-        "{what} {index} of body \"{body}\" at ({:.6e}, {:.6e}, {:.6e}) m failed at t = {time:.6e} s (step {step}): {source}; \
-         reduce time.cfl (now {cfl}), or add stabilisation",
-        position[0], position[1], position[2]
-    )]
+    #[error("{place} failed: {source}; reduce time.cfl (now {cfl}), or add stabilisation")]
     Constitutive {
-        /// `particle` or `bond`.
-        what: &'static str,
-        /// Its index in the body.
-        index: usize,
-        /// Body.
-        body: String,
-        /// Current position, m.
-        position: [f64; 3],
-        /// Time, s.
-        time: f64,
-        /// Step.
-        step: u64,
+        /// Where and when.
+        place: Box<Place>,
         /// CFL number in use.
         cfl: f64,
         /// Cause.
         source: MaterialError,
     },
-    /// A quantity is no longer a number.
+    /// A quantity is no longer a number; the position is the reference one, the current one is lost.
     #[error(
-        "{quantity} of {what} {index} of body \"{body}\" at ({:.6e}, {:.6e}, {:.6e}) m is not finite at t = {time:.6e} s (step {step}); \
-         reduce time.cfl (now {cfl}), or add stabilisation",
-        position[0], position[1], position[2]
+        "{place}: the {quantity} is not finite; reduce time.cfl (now {cfl}), or add stabilisation"
     )]
     NotFinite {
         /// Quantity.
         quantity: &'static str,
-        /// `particle` or `bond`.
-        what: &'static str,
-        /// Its index in the body.
-        index: usize,
-        /// Body.
-        body: String,
-        /// Reference position where the current one is lost, m.
-        position: [f64; 3],
-        /// Time, s.
-        time: f64,
-        /// Step.
-        step: u64,
+        /// Where and when.
+        place: Box<Place>,
         /// CFL number in use.
         cfl: f64,
     },
     /// The stable time step has become too small to go on.
     #[error(
-        "the time step fell to {time_step:.3e} s, below {limit:.3e} s (time.smallest_step), at t = {time:.6e} s (step {step}): \
-         {what} {index} of body \"{body}\" at ({:.6e}, {:.6e}, {:.6e}) m is compressed to a stretch of {stretch:.2e}; \
-         refine the lattice there or lower time.smallest_step",
-        position[0], position[1], position[2]
+        "the time step fell to {time_step:.3e} s, below {limit:.3e} s (time.smallest_step): {place} is compressed to a \
+         stretch of {stretch:.2e}; refine the lattice there or lower time.smallest_step"
     )]
     TimeStepTooSmall {
+        /// Where and when.
+        place: Box<Place>,
         /// Stable time step, s.
         time_step: f64,
         /// Floor, s.
         limit: f64,
-        /// Time, s.
-        time: f64,
-        /// Step.
-        step: u64,
-        /// `particle` or `bond`.
-        what: &'static str,
-        /// Its index in the body.
-        index: usize,
-        /// Body.
-        body: String,
-        /// Position, m.
-        position: [f64; 3],
         /// Smallest principal stretch there.
         stretch: f64,
     },
@@ -118,4 +80,32 @@ pub enum SolverError {
         /// What does not fit.
         what: String,
     },
+}
+
+/// Where and when a run went wrong.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Place {
+    /// `particle` or `bond`.
+    pub what: &'static str,
+    /// Its index in the body.
+    pub index: usize,
+    /// Body.
+    pub body: String,
+    /// Position, m.
+    pub position: [f64; 3],
+    /// Time, s.
+    pub time: f64,
+    /// Step.
+    pub step: u64,
+}
+
+impl std::fmt::Display for Place {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let [x, y, z] = self.position;
+        write!(
+            f,
+            "{} {} of body \"{}\" at ({x:.6e}, {y:.6e}, {z:.6e}) m, t = {:.6e} s (step {})",
+            self.what, self.index, self.body, self.time, self.step
+        )
+    }
 }

@@ -83,8 +83,9 @@ impl Simulation {
                 fields.pressure[i] = jstsph_tensor::mean_trace(&stress);
                 fields.cauchy_stress[i] = stress;
                 fields.equivalent_plastic_strain[i] = shares.mean(a, |q| point_strain[first + q]);
-                let stretch =
-                    shares.mean(a, |q| smallest_stretch(&state.deformation_gradient[first + q]));
+                let stretch = shares.mean(a, |q| {
+                    smallest_stretch(&state.deformation_gradient[first + q])
+                });
                 fields.wave_speed[i] = body.wave_speed / stretch;
             }
         }

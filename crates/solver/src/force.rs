@@ -29,8 +29,10 @@ pub(crate) fn average_to_particles(
 ) {
     for body in reference.bodies.iter().filter(|body| body.pairs.is_some()) {
         let (range, points) = (body.particles.clone(), body.points.clone());
-        let (velocity, deformation) =
-            (&work.velocity_gradient[points.clone()], &state.deformation_gradient[points]);
+        let (velocity, deformation) = (
+            &work.velocity_gradient[points.clone()],
+            &state.deformation_gradient[points],
+        );
         let averaged_velocity = &mut work.particle_velocity_gradient[range.clone()];
         let averaged_deformation = &mut work.particle_deformation_gradient[range];
         match quadrature {
@@ -56,12 +58,20 @@ pub(crate) fn average_to_particles(
 ///
 /// Antisymmetric pair by pair; zero for any affine motion (Ganzenmüller 2015, in the pair form of
 /// docs/theory.md).
-pub(crate) fn hourglass(reference: &Reference, state: &State, coefficient: f64, work: &mut Workspace) {
+pub(crate) fn hourglass(
+    reference: &Reference,
+    state: &State,
+    coefficient: f64,
+    work: &mut Workspace,
+) {
     for body in &reference.bodies {
         let Some(pairs) = &body.pairs else { continue };
         let range = body.particles.clone();
         let deformation = &work.particle_deformation_gradient[range.clone()];
-        let (position, start) = (&state.position[range.clone()], &reference.position[range.clone()]);
+        let (position, start) = (
+            &state.position[range.clone()],
+            &reference.position[range.clone()],
+        );
         let factor = coefficient * body.shear_modulus;
         parallel::for_each(&mut work.internal_force[range], |a, force| {
             let (indices, weights) = pairs.row(a);
@@ -88,8 +98,13 @@ pub(crate) fn hourglass_energy(reference: &Reference, state: &State, coefficient
         let range = body.particles.clone();
         let of_points = &state.deformation_gradient[body.points.clone()];
         let mut deformation = vec![Mat3::zeros(); range.len()];
-        parallel::fill(&mut deformation, |a| body.shares.mean_tensor(a, |q| of_points[q]));
-        let (position, start) = (&state.position[range.clone()], &reference.position[range.clone()]);
+        parallel::fill(&mut deformation, |a| {
+            body.shares.mean_tensor(a, |q| of_points[q])
+        });
+        let (position, start) = (
+            &state.position[range.clone()],
+            &reference.position[range.clone()],
+        );
         let volume = &reference.volume[range];
         total += 0.25
             * coefficient
@@ -119,7 +134,11 @@ pub(crate) struct Loads {
 impl Loads {
     pub(crate) fn new(model: &Model) -> Self {
         Self {
-            body_forces: model.bodies.iter().map(|body| body.body_force.clone()).collect(),
+            body_forces: model
+                .bodies
+                .iter()
+                .map(|body| body.body_force.clone())
+                .collect(),
             tractions: model
                 .conditions
                 .iter()
@@ -143,7 +162,9 @@ impl Loads {
             });
         }
         for condition in &self.tractions {
-            let ConditionKind::Traction { areas, traction } = &condition.kind else { continue };
+            let ConditionKind::Traction { areas, traction } = &condition.kind else {
+                continue;
+            };
             let first = reference.bodies[condition.body].particles.start;
             for (&particle, area) in condition.particles.iter().zip(areas) {
                 let a = first + particle as usize;

@@ -28,7 +28,7 @@ mod time_step;
 mod tvd_runge_kutta;
 
 pub use energy::{Energies, Momenta, PaperEnergies};
-pub use error::SolverError;
+pub use error::{Place, SolverError};
 pub use fields::ParticleFields;
 pub use model::{
     Biharmonic, Condition, ConditionKind, Formulation, Integrator, Jst, Laplacian, Model,

@@ -268,7 +268,14 @@ mod tests {
             values: vec![10.0, 20.0, 0.0],
         };
         let origin = Vec3::zeros();
-        for (time, expected) in [(0.0, 10.0), (1.0, 10.0), (1.5, 15.0), (3.0, 10.0), (4.0, 0.0), (9.0, 0.0)] {
+        for (time, expected) in [
+            (0.0, 10.0),
+            (1.0, 10.0),
+            (1.5, 15.0),
+            (3.0, 10.0),
+            (4.0, 0.0),
+            (9.0, 0.0),
+        ] {
             assert_eq!(signal.at(time, &origin), expected, "at {time}");
         }
     }

@@ -27,14 +27,20 @@ pub(crate) fn fill<T: Send>(out: &mut [T], value: impl Fn(usize) -> T + Sync) {
 /// Calls `action(i, &mut items[i])` for every i.
 pub(crate) fn for_each<T: Send>(items: &mut [T], action: impl Fn(usize, &mut T) + Sync) {
     if serial(items.len()) {
-        items.iter_mut().enumerate().for_each(|(i, item)| action(i, item));
+        items
+            .iter_mut()
+            .enumerate()
+            .for_each(|(i, item)| action(i, item));
         return;
     }
-    items.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, items)| {
-        for (k, item) in items.iter_mut().enumerate() {
-            action(chunk * CHUNK + k, item);
-        }
-    });
+    items
+        .par_chunks_mut(CHUNK)
+        .enumerate()
+        .for_each(|(chunk, items)| {
+            for (k, item) in items.iter_mut().enumerate() {
+                action(chunk * CHUNK + k, item);
+            }
+        });
 }
 
 /// Calls `action(i, &mut first[i], &mut second[i])` for every i; both have the same length.
@@ -97,8 +103,12 @@ pub(crate) fn for_each_with_group<A: Send, B: Send, C: Send, G: Send>(
 ) {
     debug_assert_eq!(first.len() * width, grouped.len());
     let run = |offset: usize, a: &mut [A], b: &mut [B], c: &mut [C], g: &mut [G]| {
-        for (k, (((a, b), c), g)) in
-            a.iter_mut().zip(b).zip(c).zip(g.chunks_mut(width)).enumerate()
+        for (k, (((a, b), c), g)) in a
+            .iter_mut()
+            .zip(b)
+            .zip(c)
+            .zip(g.chunks_mut(width))
+            .enumerate()
         {
             action(offset + k, a, b, c, g);
         }

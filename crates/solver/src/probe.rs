@@ -101,9 +101,9 @@ impl crate::Simulation {
     #[must_use]
     pub fn probe_columns(probe: &Probe) -> Vec<String> {
         match &probe.kind {
-            ProbeKind::Line { count, .. } => {
-                (1..=*count).map(|i| format!("{}_{i}", probe.name)).collect()
-            }
+            ProbeKind::Line { count, .. } => (1..=*count)
+                .map(|i| format!("{}_{i}", probe.name))
+                .collect(),
             _ => vec![probe.name.clone()],
         }
     }
@@ -119,7 +119,11 @@ impl crate::Simulation {
                 let lowest = coordinates().fold(f64::INFINITY, f64::min);
                 vec![highest - lowest]
             }
-            ProbeKind::Radius { particles, point, axis } => {
+            ProbeKind::Radius {
+                particles,
+                point,
+                axis,
+            } => {
                 let total: f64 = particles
                     .iter()
                     .map(|&a| {
@@ -130,14 +134,23 @@ impl crate::Simulation {
                     .sum();
                 vec![total / particles.len() as f64]
             }
-            ProbeKind::Statistic { particles, field, statistic } => {
+            ProbeKind::Statistic {
+                particles,
+                field,
+                statistic,
+            } => {
                 let value = |a: u32| self.field_value(*field, a as usize, fields);
                 vec![self.statistic(particles, *statistic, &value)]
             }
             ProbeKind::Point { position, field } => {
                 vec![self.interpolated(position, *field, fields)]
             }
-            ProbeKind::Line { from, to, count, field } => (0..*count)
+            ProbeKind::Line {
+                from,
+                to,
+                count,
+                field,
+            } => (0..*count)
                 .map(|i| {
                     let fraction = i as f64 / (*count - 1) as f64;
                     self.interpolated(&(from + (to - from) * fraction), *field, fields)
@@ -146,7 +159,12 @@ impl crate::Simulation {
         }
     }
 
-    fn statistic(&self, particles: &[u32], statistic: Statistic, value: &dyn Fn(u32) -> f64) -> f64 {
+    fn statistic(
+        &self,
+        particles: &[u32],
+        statistic: Statistic,
+        value: &dyn Fn(u32) -> f64,
+    ) -> f64 {
         let values = particles.iter().map(|&a| value(a));
         match statistic {
             Statistic::Minimum => values.fold(f64::INFINITY, f64::min),

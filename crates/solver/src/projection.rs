@@ -49,7 +49,11 @@ impl std::ops::Add for Moments {
 /// Greto & Kulasegaram 2019, (3.15). The discrete angular momentum of the time integration is
 /// conserved exactly when the lever arms are those of docs/theory.md: xⁿ in the leapfrog and in
 /// the first stage of TVD-RK2, xⁿ⁺¹ in the second.
-pub(crate) fn conserve(reference: &Reference, lever: &(impl Fn(usize) -> Vec3 + Sync), field: &mut [Vec3]) {
+pub(crate) fn conserve(
+    reference: &Reference,
+    lever: &(impl Fn(usize) -> Vec3 + Sync),
+    field: &mut [Vec3],
+) {
     for body in &reference.bodies {
         let range = body.particles.clone();
         let origin = lever(range.start);

@@ -7,9 +7,7 @@ use jstsph_sph::{GradientOperator, PairOperator, Support};
 use jstsph_tensor::{Mat3, Vec3};
 
 use crate::SolverError;
-use crate::model::{
-    Laplacian, Model, ModelBody, Quadrature, Scheme, SmoothingReference, Weights,
-};
+use crate::model::{Laplacian, Model, ModelBody, Quadrature, Scheme, SmoothingReference, Weights};
 
 /// Particles, points and operators of all bodies in the undeformed state.
 #[derive(Clone, Debug)]
@@ -96,7 +94,11 @@ impl Shares {
             shares.extend(list.iter().map(|&q| bond_volumes[q as usize] / total));
             offsets.push(points.len() as u32);
         }
-        Self { offsets, points, shares }
+        Self {
+            offsets,
+            points,
+            shares,
+        }
     }
 
     /// Points and shares of one particle.
@@ -112,7 +114,10 @@ impl Shares {
     #[must_use]
     pub fn mean(&self, particle: usize, field: impl Fn(usize) -> f64) -> f64 {
         let (points, shares) = self.of(particle);
-        points.iter().zip(shares).fold(0.0, |sum, (&q, share)| sum + field(q as usize) * share)
+        points
+            .iter()
+            .zip(shares)
+            .fold(0.0, |sum, (&q, share)| sum + field(q as usize) * share)
     }
 
     /// Volume-weighted mean of a tensor field of the points.
@@ -123,7 +128,9 @@ impl Shares {
         points
             .iter()
             .zip(shares)
-            .fold(Mat3::zeros(), |sum, (&q, share)| sum + field(q as usize) * *share)
+            .fold(Mat3::zeros(), |sum, (&q, share)| {
+                sum + field(q as usize) * *share
+            })
     }
 }
 
@@ -202,16 +209,14 @@ impl Reference {
             ..support
         };
         let stabilisation = &scheme.stabilisation;
-        let symmetric = || {
-            PairOperator::symmetric(&body.positions, &volume, &pair_support).map_err(failed)
-        };
+        let symmetric =
+            || PairOperator::symmetric(&body.positions, &volume, &pair_support).map_err(failed);
         let laplacian = match stabilisation.jst.map(|jst| jst.laplacian) {
             None => None,
             Some(Laplacian::Symmetric) => Some(symmetric()?),
             Some(Laplacian::Corrected) => {
-                let nodal =
-                    GradientOperator::at_particles(&body.positions, weights, &pair_support)
-                        .map_err(failed)?;
+                let nodal = GradientOperator::at_particles(&body.positions, weights, &pair_support)
+                    .map_err(failed)?;
                 Some(
                     PairOperator::corrected(&body.positions, &volume, &nodal, &pair_support)
                         .map_err(failed)?,
@@ -249,13 +254,17 @@ impl Reference {
     /// Mean number of particles in the sum of one evaluation point.
     #[must_use]
     pub fn neighbours_per_point(&self) -> f64 {
-        let entries: usize = self.bodies.iter().map(|body| body.gradient.entry_count()).sum();
+        let entries: usize = self
+            .bodies
+            .iter()
+            .map(|body| body.gradient.entry_count())
+            .sum();
         entries as f64 / self.point_volume.len() as f64
     }
 
-    /// Largest defect of summation by parts over the particles whose distance from the boundary
-    /// exceeds the support radius is zero by symmetry; this is the largest over *all* inner
-    /// particles given by `inner`, in units of one lattice face area.
+    /// Largest defect of summation by parts, |Σ_q V_q B_qa| over the particles of a body for which
+    /// `inner(a)` holds, in units of one lattice face area: zero when a constant stress gives no force
+    /// on inner particles. docs/theory.md lists what to expect.
     #[must_use]
     pub fn summation_defect(&self, body: usize, inner: impl Fn(usize) -> bool) -> f64 {
         let body = &self.bodies[body];

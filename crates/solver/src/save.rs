@@ -27,11 +27,17 @@ fn flat_vectors(values: &[Vec3]) -> Vec<f64> {
 }
 
 fn flat_tensors(values: &[Mat3]) -> Vec<f64> {
-    values.iter().flat_map(|m| m.as_slice().iter().copied()).collect()
+    values
+        .iter()
+        .flat_map(|m| m.as_slice().iter().copied())
+        .collect()
 }
 
 fn flat_work(values: &[Work]) -> Vec<f64> {
-    values.iter().flat_map(|w| [w.numerical, w.external, w.contact]).collect()
+    values
+        .iter()
+        .flat_map(|w| [w.numerical, w.external, w.contact])
+        .collect()
 }
 
 struct WriteHistory;
@@ -78,11 +84,19 @@ struct Arrays<'a> {
 
 impl<'a> Arrays<'a> {
     fn get(&self, name: &str, length: usize) -> Result<&'a [f64], SolverError> {
-        let found = self.saved.arrays.iter().find(|(n, _)| n == name).map(|(_, values)| values);
+        let found = self
+            .saved
+            .arrays
+            .iter()
+            .find(|(n, _)| n == name)
+            .map(|(_, values)| values);
         match found {
             Some(values) if values.len() == length => Ok(values),
             Some(values) => Err(SolverError::ForeignState {
-                what: format!("{name} has {} numbers, this case has {length}", values.len()),
+                what: format!(
+                    "{name} has {} numbers, this case has {length}",
+                    values.len()
+                ),
             }),
             None => Err(SolverError::ForeignState {
                 what: format!("{name} is missing"),
@@ -133,31 +147,69 @@ impl Simulation {
             ("position".to_owned(), flat_vectors(&state.position)),
             ("momentum".to_owned(), flat_vectors(&state.momentum)),
             ("jacobian".to_owned(), state.jacobian.clone()),
-            ("deformation_gradient".to_owned(), flat_tensors(&state.deformation_gradient)),
+            (
+                "deformation_gradient".to_owned(),
+                flat_tensors(&state.deformation_gradient),
+            ),
             ("cofactor".to_owned(), flat_tensors(&state.cofactor)),
             // Re-evaluated stresses differ in the last bit where a point is on its yield surface.
-            ("scaled_stress".to_owned(), flat_tensors(&work.scaled_stress)),
-            ("volumetric_stress".to_owned(), work.volumetric_stress.clone()),
+            (
+                "scaled_stress".to_owned(),
+                flat_tensors(&work.scaled_stress),
+            ),
+            (
+                "volumetric_stress".to_owned(),
+                work.volumetric_stress.clone(),
+            ),
             ("plastic_work".to_owned(), work.plastic_work.clone()),
-            ("jacobian_dissipation".to_owned(), work.jacobian_dissipation.clone()),
-            ("momentum_before".to_owned(), flat_vectors(&ledger.momentum_before)),
+            (
+                "jacobian_dissipation".to_owned(),
+                work.jacobian_dissipation.clone(),
+            ),
+            (
+                "momentum_before".to_owned(),
+                flat_vectors(&ledger.momentum_before),
+            ),
             ("work".to_owned(), flat_work(&ledger.work)),
             ("last_work".to_owned(), flat_work(&ledger.last_work)),
-            ("plastic_dissipation".to_owned(), ledger.plastic_dissipation.clone()),
-            ("condition_impulse".to_owned(), flat_vectors(&ledger.condition_impulse)),
-            ("obstacle_displacement".to_owned(), flat_vectors(&self.obstacles.displacement)),
+            (
+                "plastic_dissipation".to_owned(),
+                ledger.plastic_dissipation.clone(),
+            ),
+            (
+                "condition_impulse".to_owned(),
+                flat_vectors(&ledger.condition_impulse),
+            ),
+            (
+                "obstacle_displacement".to_owned(),
+                flat_vectors(&self.obstacles.displacement),
+            ),
             (
                 "contact_impulse".to_owned(),
-                ledger.contact.iter().flat_map(|s| [s.impulse.x, s.impulse.y, s.impulse.z]).collect(),
+                ledger
+                    .contact
+                    .iter()
+                    .flat_map(|s| [s.impulse.x, s.impulse.y, s.impulse.z])
+                    .collect(),
             ),
             (
                 "contact_corrections".to_owned(),
-                ledger.contact.iter().map(|s| f64::from(s.corrections)).collect(),
+                ledger
+                    .contact
+                    .iter()
+                    .map(|s| f64::from(s.corrections))
+                    .collect(),
             ),
-            ("scalars".to_owned(), vec![self.initial_energy, self.first_dt]),
+            (
+                "scalars".to_owned(),
+                vec![self.initial_energy, self.first_dt],
+            ),
         ];
         for (k, material) in self.materials.iter().enumerate() {
-            arrays.push((format!("history_{k}"), material.visit_ref(&mut WriteHistory)));
+            arrays.push((
+                format!("history_{k}"),
+                material.visit_ref(&mut WriteHistory),
+            ));
         }
         Saved {
             time: self.time,
@@ -206,7 +258,9 @@ impl Simulation {
             let name = format!("history_{k}");
             let found = saved.arrays.iter().find(|(n, _)| *n == name);
             let Some((_, flat)) = found else {
-                return Err(SolverError::ForeignState { what: format!("{name} is missing") });
+                return Err(SolverError::ForeignState {
+                    what: format!("{name} is missing"),
+                });
             };
             if !MaterialBlock::visit(material, &mut ReadHistory { flat }) {
                 return Err(SolverError::ForeignState {

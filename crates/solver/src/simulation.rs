@@ -4,6 +4,7 @@ use jstsph_material::MaterialBlock;
 use jstsph_tensor::Vec3;
 
 use crate::constraint::{MAX_OBSTACLES, Obstacles, Prescribed};
+use crate::error::Place;
 use crate::force::Loads;
 use crate::leapfrog::Kick;
 use crate::model::{ConditionKind, Formulation, Integrator, Model, Scheme};
@@ -58,7 +59,9 @@ impl Simulation {
             .iter()
             .flat_map(|body| {
                 let density = body.material.density();
-                body.initial_velocity.iter().map(move |velocity| velocity * density)
+                body.initial_velocity
+                    .iter()
+                    .map(move |velocity| velocity * density)
             })
             .collect();
         let state = State::undeformed(&reference, momentum);
@@ -81,9 +84,13 @@ impl Simulation {
             condition_impulse: vec![Vec3::zeros(); prescribed.len()],
         };
         let work = Workspace::new(&reference);
-        let start = (model.scheme.integrator == Integrator::TvdRungeKutta)
-            .then(|| Box::new(state.clone()));
-        let plastic = if model.scheme.stabilisation.jst.is_some() { points } else { 0 };
+        let start =
+            (model.scheme.integrator == Integrator::TvdRungeKutta).then(|| Box::new(state.clone()));
+        let plastic = if model.scheme.stabilisation.jst.is_some() {
+            points
+        } else {
+            0
+        };
         let mut simulation = Self {
             loads: Loads::new(&model),
             scheme: model.scheme,
@@ -228,7 +235,12 @@ impl Simulation {
             );
         }
         if stabilisation.hourglass != 0.0 {
-            force::hourglass(&self.reference, &self.state, stabilisation.hourglass, &mut self.work);
+            force::hourglass(
+                &self.reference,
+                &self.state,
+                stabilisation.hourglass,
+                &mut self.work,
+            );
         }
         let dissipates = stabilisation.jst.is_some() || stabilisation.upwind != 0.0;
         dissipation::evaluate(
@@ -246,7 +258,8 @@ impl Simulation {
                 projection::conserve(&self.reference, &lever, &mut self.work.dissipation);
             }
         }
-        self.loads.evaluate(&self.reference, self.time, &mut self.work.external_force);
+        self.loads
+            .evaluate(&self.reference, self.time, &mut self.work.external_force);
     }
 
     pub(crate) fn evaluate_stress(&mut self, dt: f64) -> Result<(), SolverError> {
@@ -287,9 +300,16 @@ impl Simulation {
 
     /// Prescribed velocities at `time` and contact over the travel of `dt` that follows.
     pub(crate) fn constrain(&mut self, time: f64, dt: f64, factor: f64) {
-        let Self { reference, state, ledger, .. } = self;
-        self.prescribed.apply(reference, time, factor, &mut state.momentum, ledger);
-        self.obstacles.apply(reference, time, dt, factor, state, ledger);
+        let Self {
+            reference,
+            state,
+            ledger,
+            ..
+        } = self;
+        self.prescribed
+            .apply(reference, time, factor, &mut state.momentum, ledger);
+        self.obstacles
+            .apply(reference, time, dt, factor, state, ledger);
     }
 
     /// Sets the clock; `end` exactly when the step was cut there.
@@ -301,14 +321,26 @@ impl Simulation {
     // Pieces of the leapfrog.
 
     pub(crate) fn move_particles(&mut self, dt: f64) {
-        let Self { reference, state, .. } = self;
-        let State { position, momentum, .. } = state;
-        parallel::for_each(position, |a, x| *x += momentum[a] * (dt / reference.density[a]));
+        let Self {
+            reference, state, ..
+        } = self;
+        let State {
+            position, momentum, ..
+        } = state;
+        parallel::for_each(position, |a, x| {
+            *x += momentum[a] * (dt / reference.density[a])
+        });
     }
 
     pub(crate) fn drift_strains(&mut self, dt: f64) {
         self.book_jacobian_dissipation(dt);
-        strain::drift(self.strains(), &self.reference, &mut self.state, &mut self.work, dt);
+        strain::drift(
+            self.strains(),
+            &self.reference,
+            &mut self.state,
+            &mut self.work,
+            dt,
+        );
     }
 
     pub(crate) fn advance_time(&mut self, dt: f64, end: f64) {
@@ -319,7 +351,12 @@ impl Simulation {
     /// p += Δt R over `duration`, then the constraints for the travel over `travel` that follows,
     /// and the books of the kick.
     pub(crate) fn kick(&mut self, kick: Kick, duration: f64, travel: f64) {
-        let Self { state, work, ledger, .. } = self;
+        let Self {
+            state,
+            work,
+            ledger,
+            ..
+        } = self;
         parallel::for_each_triple(
             &mut state.momentum,
             &mut ledger.momentum_before,
@@ -335,11 +372,29 @@ impl Simulation {
             },
         );
         let time = self.time;
-        let Self { reference, state, ledger, .. } = self;
-        self.prescribed.apply(reference, time + 0.5 * travel, 1.0, &mut state.momentum, ledger);
-        self.obstacles.apply(reference, time, travel, 1.0, state, ledger);
+        let Self {
+            reference,
+            state,
+            ledger,
+            ..
+        } = self;
+        self.prescribed.apply(
+            reference,
+            time + 0.5 * travel,
+            1.0,
+            &mut state.momentum,
+            ledger,
+        );
+        self.obstacles
+            .apply(reference, time, travel, 1.0, state, ledger);
 
-        let Ledger { momentum_before, impulse, work: total, last_work, .. } = ledger;
+        let Ledger {
+            momentum_before,
+            impulse,
+            work: total,
+            last_work,
+            ..
+        } = ledger;
         let momentum = &state.momentum;
         parallel::for_each_pair(total, last_work, |a, total, last| {
             let mean = (momentum_before[a] + momentum[a]) * (0.5 / reference.density[a]);
@@ -361,13 +416,23 @@ impl Simulation {
 
     /// Work that D(J) does on the volumetric energy over `dt`.
     fn book_jacobian_dissipation(&mut self, dt: f64) {
-        if !self.scheme.stabilisation.jst.is_some_and(|jst| jst.on_jacobian) {
+        if !self
+            .scheme
+            .stabilisation
+            .jst
+            .is_some_and(|jst| jst.on_jacobian)
+        {
             return;
         }
-        let Self { state, work, ledger, .. } = self;
+        let Self {
+            state,
+            work,
+            ledger,
+            ..
+        } = self;
         parallel::for_each(&mut ledger.work, |a, total| {
-            total.numerical += dt * work.volumetric_stress[a] / state.jacobian[a]
-                * work.jacobian_dissipation[a];
+            total.numerical +=
+                dt * work.volumetric_stress[a] / state.jacobian[a] * work.jacobian_dissipation[a];
         });
     }
 
@@ -387,15 +452,28 @@ impl Simulation {
     pub(crate) fn stage(&mut self, dt: f64) {
         self.book_jacobian_dissipation(0.5 * dt);
         let strains = self.strains();
-        let Self { reference, state, work, ledger, .. } = self;
+        let Self {
+            reference,
+            state,
+            work,
+            ledger,
+            ..
+        } = self;
         strain::euler(strains, reference, state, work, dt);
-        let State { position, momentum, .. } = state;
-        parallel::for_each_triple(position, momentum, &mut ledger.impulse, |a, x, p, impulse| {
-            *x += *p * (dt / reference.density[a]);
-            impulse.numerical += work.dissipation[a] * (0.5 * dt);
-            impulse.external += work.external_force[a] * (0.5 * dt);
-            *p += (work.dissipation[a] + work.external_force[a] - work.internal_force[a]) * dt;
-        });
+        let State {
+            position, momentum, ..
+        } = state;
+        parallel::for_each_triple(
+            position,
+            momentum,
+            &mut ledger.impulse,
+            |a, x, p, impulse| {
+                *x += *p * (dt / reference.density[a]);
+                impulse.numerical += work.dissipation[a] * (0.5 * dt);
+                impulse.external += work.external_force[a] * (0.5 * dt);
+                *p += (work.dissipation[a] + work.external_force[a] - work.internal_force[a]) * dt;
+            },
+        );
     }
 
     /// Forces of stage 2, with the lever arms xⁿ⁺¹ = ½ (xⁿ + x* + Δt p*/ρ).
@@ -406,7 +484,8 @@ impl Simulation {
         self.time += dt;
         if let Some(start) = &start {
             self.forces(|state, a| {
-                (start.position[a] + state.position[a] + state.momentum[a] * (dt / density[a])) * 0.5
+                (start.position[a] + state.position[a] + state.momentum[a] * (dt / density[a]))
+                    * 0.5
             });
         }
         self.time = time;
@@ -417,7 +496,12 @@ impl Simulation {
     /// uⁿ⁺¹ = (uⁿ + u**)/2 (3.16c), then the strains that are not integrated.
     pub(crate) fn average_with_start(&mut self) {
         let strains = self.strains();
-        let Self { reference, state, start, .. } = self;
+        let Self {
+            reference,
+            state,
+            start,
+            ..
+        } = self;
         let Some(start) = start else { return };
         parallel::for_each_triple(
             &mut state.position,
@@ -443,7 +527,13 @@ impl Simulation {
     /// Work of the impulses of a Runge-Kutta step, with the mean velocity of the step: their sum
     /// is the change of kinetic energy exactly.
     pub(crate) fn close_books(&mut self) {
-        let Self { reference, state, start, ledger, .. } = self;
+        let Self {
+            reference,
+            state,
+            start,
+            ledger,
+            ..
+        } = self;
         let Some(start) = start else { return };
         let impulse = &ledger.impulse;
         parallel::for_each(&mut ledger.work, |a, total| {
@@ -456,14 +546,10 @@ impl Simulation {
 
     fn not_finite(&self, point: usize) -> SolverError {
         let (body, index) = self.reference.owner_of_point(point);
+        let position = self.reference.point_position[point].into();
         SolverError::NotFinite {
             quantity: "deformation gradient",
-            what: self.point_name(),
-            index,
-            body: self.reference.bodies[body].name.clone(),
-            position: self.reference.point_position[point].into(),
-            time: self.time,
-            step: self.step,
+            place: self.place(body, index, position),
             cfl: self.scheme.cfl,
         }
     }
@@ -471,29 +557,31 @@ impl Simulation {
     fn too_small(&self, time_step: f64, limit: f64, stable: &StableStep) -> SolverError {
         let (body, index) = self.reference.owner_of_point(stable.point);
         SolverError::TimeStepTooSmall {
+            place: self.place(body, index, self.current_point_position(body, index)),
             time_step,
             limit,
-            time: self.time,
-            step: self.step,
-            what: self.point_name(),
-            index,
-            body: self.reference.bodies[body].name.clone(),
-            position: self.current_point_position(body, index),
             stretch: stable.stretch,
         }
     }
 
     fn constitutive(&self, failure: stress::StressFailure) -> SolverError {
+        let (body, index) = (failure.body, failure.point);
         SolverError::Constitutive {
-            what: self.point_name(),
-            index: failure.point,
-            body: self.reference.bodies[failure.body].name.clone(),
-            position: self.current_point_position(failure.body, failure.point),
-            time: self.time,
-            step: self.step,
+            place: self.place(body, index, self.current_point_position(body, index)),
             cfl: self.scheme.cfl,
             source: failure.source,
         }
+    }
+
+    fn place(&self, body: usize, index: usize, position: [f64; 3]) -> Box<Place> {
+        Box::new(Place {
+            what: self.point_name(),
+            index,
+            body: self.reference.bodies[body].name.clone(),
+            position,
+            time: self.time,
+            step: self.step,
+        })
     }
 
     /// `particle` or `bond`.
@@ -534,10 +622,12 @@ fn check(model: &Model) -> Result<(), SolverError> {
         ));
     }
     for body in &model.bodies {
-        body.material.validate().map_err(|source| SolverError::Material {
-            body: body.name.clone(),
-            source,
-        })?;
+        body.material
+            .validate()
+            .map_err(|source| SolverError::Material {
+                body: body.name.clone(),
+                source,
+            })?;
         if body.initial_velocity.len() != body.body.positions.len() {
             return inconsistent(format!(
                 "body \"{}\" has {} particles but {} initial velocities",
@@ -557,7 +647,11 @@ fn check(model: &Model) -> Result<(), SolverError> {
             ));
         };
         let particles = body.body.positions.len();
-        if let Some(particle) = condition.particles.iter().find(|a| **a as usize >= particles) {
+        if let Some(particle) = condition
+            .particles
+            .iter()
+            .find(|a| **a as usize >= particles)
+        {
             return inconsistent(format!(
                 "condition \"{}\" refers to particle {particle} of {particles}",
                 condition.name

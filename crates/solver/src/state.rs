@@ -39,7 +39,8 @@ impl State {
         self.position.copy_from_slice(&other.position);
         self.momentum.copy_from_slice(&other.momentum);
         self.jacobian.copy_from_slice(&other.jacobian);
-        self.deformation_gradient.copy_from_slice(&other.deformation_gradient);
+        self.deformation_gradient
+            .copy_from_slice(&other.deformation_gradient);
         self.cofactor.copy_from_slice(&other.cofactor);
     }
 }

@@ -71,15 +71,18 @@ pub(crate) fn drift(
         let change = &volume_change[body.points.clone()];
         let dissipation = &jacobian_dissipation[body.particles.clone()];
         let gradients = &state.deformation_gradient[body.points.clone()];
-        parallel::for_each(&mut state.jacobian[body.particles.clone()], |a, jacobian| {
-            *jacobian = match (strains.formulation, bonds) {
-                (Formulation::MomentumGradient, _) => {
-                    body.shares.mean(a, |q| gradients[q].determinant())
-                }
-                (_, true) => *jacobian * body.shares.mean(a, |q| change[q]).exp(),
-                (_, false) => *jacobian + change[a],
-            } + dt * dissipation[a];
-        });
+        parallel::for_each(
+            &mut state.jacobian[body.particles.clone()],
+            |a, jacobian| {
+                *jacobian = match (strains.formulation, bonds) {
+                    (Formulation::MomentumGradient, _) => {
+                        body.shares.mean(a, |q| gradients[q].determinant())
+                    }
+                    (_, true) => *jacobian * body.shares.mean(a, |q| change[q]).exp(),
+                    (_, false) => *jacobian + change[a],
+                } + dt * dissipation[a];
+            },
+        );
     }
 }
 
@@ -116,14 +119,17 @@ pub(crate) fn euler(
     for body in &reference.bodies {
         let rate = &volume_change[body.points.clone()];
         let dissipation = &jacobian_dissipation[body.particles.clone()];
-        parallel::for_each(&mut state.jacobian[body.particles.clone()], |a, jacobian| {
-            let growth = if bonds {
-                *jacobian * body.shares.mean(a, |q| rate[q])
-            } else {
-                rate[a]
-            };
-            *jacobian += dt * (growth + dissipation[a]);
-        });
+        parallel::for_each(
+            &mut state.jacobian[body.particles.clone()],
+            |a, jacobian| {
+                let growth = if bonds {
+                    *jacobian * body.shares.mean(a, |q| rate[q])
+                } else {
+                    rate[a]
+                };
+                *jacobian += dt * (growth + dissipation[a]);
+            },
+        );
     }
     constrain(strains, reference, state);
 }

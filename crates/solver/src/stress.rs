@@ -74,7 +74,10 @@ impl BlockReader for Failure<'_> {
     type Output = Option<MaterialError>;
     fn visit<M: Material>(&mut self, block: &Block<M>) -> Self::Output {
         let now = self.points.kinematics(self.point);
-        block.model.respond(&now, &block.committed[self.point]).err()
+        block
+            .model
+            .respond(&now, &block.committed[self.point])
+            .err()
     }
 }
 
@@ -91,11 +94,17 @@ impl BlockVisitor for Evaluation<'_> {
 
     fn visit<M: Material>(&mut self, block: &mut Block<M>) -> Self::Output {
         let points = self.points;
-        let Block { model, committed, candidate } = block;
+        let Block {
+            model,
+            committed,
+            candidate,
+        } = block;
         let (model, committed): (&M, &[M::History]) = (model, committed);
         let without_jacobian = points.without_jacobian();
         if !without_jacobian {
-            parallel::fill(self.volumetric_stress, |a| model.volumetric_stress(points.jacobian[a]));
+            parallel::fill(self.volumetric_stress, |a| {
+                model.volumetric_stress(points.jacobian[a])
+            });
         }
         let volumetric_stress: &[f64] = self.volumetric_stress;
         let at_particles = points.strains.quadrature == Quadrature::Particles;
@@ -120,8 +129,11 @@ impl BlockVisitor for Evaluation<'_> {
                         stress.m22 += pressure;
                         stress.m33 += pressure;
                         // P = σ H with σ = τ/J (A.4); with bonds τ F⁻ᵀ, conjugate to tr(G F⁻¹).
-                        let jacobian =
-                            if at_particles { now.jacobian } else { points.determinant(q) };
+                        let jacobian = if at_particles {
+                            now.jacobian
+                        } else {
+                            points.determinant(q)
+                        };
                         *scaled_stress =
                             stress * points.cofactor[q] * (points.volume[q] / jacobian);
                         *plastic_work = response.plastic_work;
@@ -171,7 +183,11 @@ pub(crate) fn evaluate(
                     jacobian: f64::NAN,
                     determinant: f64::NAN,
                 });
-            return Err(StressFailure { body: index, point, source });
+            return Err(StressFailure {
+                body: index,
+                point,
+                source,
+            });
         }
     }
     Ok(())

@@ -1,6 +1,6 @@
 //! The stable time step (3.17).
 
-use jstsph_tensor::{Mat3, largest_eigenvalue, norm_squared};
+use jstsph_tensor::{Mat3, double_dot, largest_eigenvalue, norm_squared};
 
 use crate::parallel;
 use crate::reference::Reference;
@@ -31,10 +31,10 @@ pub(crate) struct StableStep {
 /// (F⁻¹ F⁻ᵀ), whose largest principal value is one over the smallest squared principal stretch.
 #[inline]
 fn inverse_cauchy_green(deformation_gradient: &Mat3, cofactor: &Mat3) -> Mat3 {
-    let f = deformation_gradient;
-    let h = cofactor;
-    let determinant = f.m11 * h.m11 + f.m12 * h.m12 + f.m13 * h.m13;
-    h.transpose() * h * (1.0 / (determinant * determinant))
+    // Not the first row alone: H is cof F only to second order in TVD-RK2, and the step must not
+    // depend on the axes.
+    let determinant = double_dot(deformation_gradient, cofactor) / 3.0;
+    cofactor.transpose() * cofactor * (1.0 / (determinant * determinant))
 }
 
 /// Δt / CFL = min Δx λ_min / c_p over all points: compression makes waves faster in the reference
@@ -64,7 +64,11 @@ pub(crate) fn stable_step(reference: &Reference, state: &State) -> StableStep {
                     if bound * BOUND_MARGIN < best.inverse_stretch_squared {
                         continue;
                     }
-                    let value = if bound.is_finite() { largest_eigenvalue(&inverse) } else { f64::NAN };
+                    let value = if bound.is_finite() {
+                        largest_eigenvalue(&inverse)
+                    } else {
+                        f64::NAN
+                    };
                     if value.is_nan() {
                         return Steepest {
                             inverse_stretch_squared: f64::NAN,
@@ -81,7 +85,9 @@ pub(crate) fn stable_step(reference: &Reference, state: &State) -> StableStep {
                 best
             },
             &|a: Steepest, b: Steepest| {
-                if a.inverse_stretch_squared.is_nan() || a.inverse_stretch_squared >= b.inverse_stretch_squared {
+                if a.inverse_stretch_squared.is_nan()
+                    || a.inverse_stretch_squared >= b.inverse_stretch_squared
+                {
                     a
                 } else {
                     b
@@ -122,7 +128,11 @@ mod tests {
 
     /// Two bodies of different material and more points than one leaf of the reduction has.
     fn two_bodies() -> (Reference, State) {
-        let mut model = model([30, 20, 1], elastic(), scheme(Quadrature::Bonds, Integrator::Leapfrog));
+        let mut model = model(
+            [30, 20, 1],
+            elastic(),
+            scheme(Quadrature::Bonds, Integrator::Leapfrog),
+        );
         model.bodies.push(body("second", [40, 35, 1], copper()));
         let reference = Reference::new(&model).unwrap();
         let momentum = vec![jstsph_tensor::Vec3::zeros(); reference.position.len()];
@@ -176,7 +186,11 @@ mod tests {
             let expected = brute_force(&reference, &state);
             for threads in [1, 3] {
                 let found = in_pool(threads, || stable_step(&reference, &state));
-                assert_eq!(found.time.to_bits(), expected.0.to_bits(), "amplitude {amplitude}");
+                assert_eq!(
+                    found.time.to_bits(),
+                    expected.0.to_bits(),
+                    "amplitude {amplitude}"
+                );
                 assert_eq!(found.point, expected.1, "amplitude {amplitude}");
             }
         }
@@ -187,9 +201,18 @@ mod tests {
         let (reference, mut state) = two_bodies();
         let second = &reference.bodies[1];
         let undeformed = stable_step(&reference, &state);
-        assert!((undeformed.time - 1e-3 / second.wave_speed).abs() < 1e-15 * undeformed.time.max(1.0));
-        assert_eq!((undeformed.point, undeformed.stretch), (second.points.start, 1.0));
-        deform(&mut state, 77, Mat3::from_diagonal(&jstsph_tensor::Vec3::new(1.0, 0.1, 1.0)));
+        assert!(
+            (undeformed.time - 1e-3 / second.wave_speed).abs() < 1e-15 * undeformed.time.max(1.0)
+        );
+        assert_eq!(
+            (undeformed.point, undeformed.stretch),
+            (second.points.start, 1.0)
+        );
+        deform(
+            &mut state,
+            77,
+            Mat3::from_diagonal(&jstsph_tensor::Vec3::new(1.0, 0.1, 1.0)),
+        );
         let found = stable_step(&reference, &state);
         assert_eq!(found.point, 77);
         assert!((found.stretch - 0.1).abs() < 1e-15);

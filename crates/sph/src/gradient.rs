@@ -150,8 +150,14 @@ impl GradientOperator {
             }
             let mean = gradient_sum / value_sum;
             moment -= mean * value_offset.transpose();
-            let correction =
-                invert_moment(moment, support, "evaluation point", q, &points[q], entries.len())?;
+            let correction = invert_moment(
+                moment,
+                support,
+                "evaluation point",
+                q,
+                &points[q],
+                entries.len(),
+            )?;
             for (c, weight) in entries.iter_mut() {
                 let value = support.value((positions[*c as usize] - points[q]).norm());
                 *weight = (correction * (Vec3::from(*weight) - mean * value)).into();
@@ -290,9 +296,12 @@ impl GradientOperator {
         (0..self.particles())
             .map(|c| {
                 let (indices, weights) = self.columns.row(c);
-                indices.iter().zip(weights).fold(Vec3::zeros(), |sum, (&q, w)| {
-                    sum + Vec3::from(*w) * point_volumes[q as usize]
-                })
+                indices
+                    .iter()
+                    .zip(weights)
+                    .fold(Vec3::zeros(), |sum, (&q, w)| {
+                        sum + Vec3::from(*w) * point_volumes[q as usize]
+                    })
             })
             .collect()
     }

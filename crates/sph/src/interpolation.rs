@@ -36,13 +36,18 @@ mod tests {
 
     #[test]
     fn constants_are_exact_and_far_points_have_no_value() {
-        let positions = [Vec3::zeros(), Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0)];
+        let positions = [
+            Vec3::zeros(),
+            Vec3::new(1.0, 0.0, 0.0),
+            Vec3::new(0.0, 1.0, 0.0),
+        ];
         let support = Support {
             kernel: Kernel::QuinticSpline,
             smoothing_length: 1.0,
             dimension: 2,
         };
-        let at = |point: Vec3| interpolate(&point, &positions, &[1.0, 0.5, 0.25], &[7.0; 3], &support);
+        let at =
+            |point: Vec3| interpolate(&point, &positions, &[1.0, 0.5, 0.25], &[7.0; 3], &support);
         assert!((at(Vec3::new(0.3, 0.4, 0.0)).unwrap() - 7.0).abs() < 1e-14);
         assert_eq!(at(Vec3::new(9.0, 0.0, 0.0)), None);
     }

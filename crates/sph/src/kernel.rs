@@ -72,9 +72,7 @@ impl Kernel {
             Self::QuinticSpline => (2.0 - q).powi(5) - 16.0 * (1.0 - q).max(0.0).powi(5),
             Self::CubicSpline => 0.25 * (2.0 - q).powi(3) - (1.0 - q).max(0.0).powi(3),
             Self::WendlandC2 => (1.0 - 0.5 * q).powi(4) * (2.0 * q + 1.0),
-            Self::WendlandC4 => {
-                (1.0 - 0.5 * q).powi(6) * (35.0 / 12.0 * q * q + 3.0 * q + 1.0)
-            }
+            Self::WendlandC4 => (1.0 - 0.5 * q).powi(6) * (35.0 / 12.0 * q * q + 3.0 * q + 1.0),
         };
         self.normalisation(dimension) * shape / h.powi(dimension as i32)
     }
@@ -88,16 +86,10 @@ impl Kernel {
             return 0.0;
         }
         let slope = match self {
-            Self::QuinticSpline => {
-                -5.0 * (2.0 - q).powi(4) + 80.0 * (1.0 - q).max(0.0).powi(4)
-            }
-            Self::CubicSpline => {
-                -0.75 * (2.0 - q).powi(2) + 3.0 * (1.0 - q).max(0.0).powi(2)
-            }
+            Self::QuinticSpline => -5.0 * (2.0 - q).powi(4) + 80.0 * (1.0 - q).max(0.0).powi(4),
+            Self::CubicSpline => -0.75 * (2.0 - q).powi(2) + 3.0 * (1.0 - q).max(0.0).powi(2),
             Self::WendlandC2 => -5.0 * q * (1.0 - 0.5 * q).powi(3),
-            Self::WendlandC4 => {
-                -7.0 / 3.0 * q * (2.0 + 5.0 * q) * (1.0 - 0.5 * q).powi(5)
-            }
+            Self::WendlandC4 => -7.0 / 3.0 * q * (2.0 + 5.0 * q) * (1.0 - 0.5 * q).powi(5),
         };
         self.normalisation(dimension) * slope / (h.powi(dimension as i32 + 1) * r)
     }

@@ -62,7 +62,9 @@ pub enum SphError {
         limit: f64,
     },
     /// Offsets are 32-bit.
-    #[error("{entries} neighbour entries exceed the limit of {limit}; use fewer particles or a smaller smoothing ratio")]
+    #[error(
+        "{entries} neighbour entries exceed the limit of {limit}; use fewer particles or a smaller smoothing ratio"
+    )]
     TooManyEntries {
         /// Entries needed.
         entries: usize,

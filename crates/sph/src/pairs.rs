@@ -127,7 +127,9 @@ impl PairOperator {
         indices
             .iter()
             .zip(weights)
-            .fold(Vec3::zeros(), |sum, (&b, w)| sum + (field[b as usize] - own) * *w)
+            .fold(Vec3::zeros(), |sum, (&b, w)| {
+                sum + (field[b as usize] - own) * *w
+            })
     }
 
     /// Σ_b ℓ_ab (f_b − f_a) of a scalar field.

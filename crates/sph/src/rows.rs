@@ -42,7 +42,11 @@ pub(crate) struct Rows<W> {
 impl<W: Weight> Rows<W> {
     /// Builds the rows one after another, in the order of the rows, sharing equal weight lists.
     /// `scale` is the largest weight, to which the sharing tolerance is relative.
-    pub(crate) fn build(rows: usize, scale: f64, mut row: impl FnMut(usize, &mut Vec<(u32, W)>)) -> Self {
+    pub(crate) fn build(
+        rows: usize,
+        scale: f64,
+        mut row: impl FnMut(usize, &mut Vec<(u32, W)>),
+    ) -> Self {
         let mut result = Self {
             offsets: Vec::with_capacity(rows + 1),
             indices: Vec::new(),
@@ -59,13 +63,17 @@ impl<W: Weight> Rows<W> {
             key.clear();
             for (index, weight) in &entries {
                 result.indices.push(*index);
-                key.extend((0..W::COMPONENTS).map(|c| (weight.component(c) / quantum).round() as i64));
+                key.extend(
+                    (0..W::COMPONENTS).map(|c| (weight.component(c) / quantum).round() as i64),
+                );
             }
             let start = match known.get(&key) {
                 Some(start) => *start,
                 None => {
                     let start = result.weights.len() as u32;
-                    result.weights.extend(entries.iter().map(|(_, weight)| *weight));
+                    result
+                        .weights
+                        .extend(entries.iter().map(|(_, weight)| *weight));
                     known.insert(key.clone(), start);
                     start
                 }
@@ -91,7 +99,10 @@ impl<W: Weight> Rows<W> {
         let mut sources = vec![(0u32, 0u32); self.indices.len()];
         for i in 0..self.len() {
             let start = self.offsets[i] as usize;
-            for (k, &index) in self.indices[start..self.offsets[i + 1] as usize].iter().enumerate() {
+            for (k, &index) in self.indices[start..self.offsets[i + 1] as usize]
+                .iter()
+                .enumerate()
+            {
                 let slot = &mut next[index as usize];
                 sources[*slot as usize] = (i as u32, self.weight_starts[i] + k as u32);
                 *slot += 1;
@@ -141,7 +152,10 @@ mod tests {
     fn equal_rows_share_their_weights_and_transposition_keeps_every_entry() {
         let rows = Rows::<f64>::build(4, 2.0, |i, entries| {
             entries.push((i as u32, 2.0));
-            entries.push((i as u32 + 1, if i == 3 { 0.5 } else { 1.0 + 1e-14 * i as f64 }));
+            entries.push((
+                i as u32 + 1,
+                if i == 3 { 0.5 } else { 1.0 + 1e-14 * i as f64 },
+            ));
         });
         assert_eq!(rows.entry_count(), 8);
         assert_eq!(rows.stored_weights(), 4);

@@ -81,7 +81,11 @@ pub fn deviator(a: &Mat3) -> Mat3 {
 #[inline]
 #[must_use]
 pub fn symmetric_part(a: &Mat3) -> Mat3 {
-    let (m12, m13, m23) = (0.5 * (a.m12 + a.m21), 0.5 * (a.m13 + a.m31), 0.5 * (a.m23 + a.m32));
+    let (m12, m13, m23) = (
+        0.5 * (a.m12 + a.m21),
+        0.5 * (a.m13 + a.m31),
+        0.5 * (a.m23 + a.m32),
+    );
     Mat3::new(a.m11, m12, m13, m12, a.m22, m23, m13, m23, a.m33)
 }
 

@@ -1,0 +1,306 @@
+//! A body, or several, coloured by a field, with what is around them.
+
+use jstsph_case::Case;
+use jstsph_case::units::Measure;
+use jstsph_geometry::{Axis, Cells, Dimension, Shape};
+use jstsph_output::plot::{Figure, ParticlePlot, View};
+use jstsph_tensor::Vec3;
+
+use super::frames::Chosen;
+use super::{field, heading, lines};
+use crate::arguments::{Look, ValueRange, ViewName};
+use crate::error::CliError;
+
+/// How near a particle must be to the middle layer to belong to it, in spacings.
+const SAME_LAYER: f64 = 1e-4;
+
+/// What the body is seen from, and whether it is cut open.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Sight {
+    /// Axes to the right, up and along the view; `None` for the oblique view.
+    pub(super) plane: Option<[usize; 3]>,
+    pub(super) is_cut: bool,
+}
+
+impl Sight {
+    /// What was asked for, or what shows most: plane strain as it is, solids cut through the
+    /// middle along a plane that contains the axis of a cylinder.
+    fn new(case: &Case, look: &Look) -> Self {
+        let is_solid = case.model.dimension == Dimension::Solid;
+        let view = look.view.unwrap_or(if is_solid {
+            match case.model.bodies[0].body.shape {
+                Shape::Cylinder { axis: Axis::Y, .. } => ViewName::Xy,
+                _ => ViewName::Xz,
+            }
+        } else {
+            ViewName::Xy
+        });
+        Self {
+            plane: match view {
+                ViewName::Xy => Some([0, 1, 2]),
+                ViewName::Xz => Some([0, 2, 1]),
+                ViewName::Yz => Some([1, 2, 0]),
+                ViewName::Oblique => None,
+            },
+            is_cut: is_solid && (look.section || look.view.is_none()),
+        }
+    }
+
+    fn view(self, case: &Case) -> View {
+        match self.plane {
+            Some([0, 1, _]) => View::Xy,
+            Some([0, ..]) => View::Xz,
+            Some(_) => View::Yz,
+            None if case.model.dimension == Dimension::Solid => {
+                View::Oblique(jstsph_output::plot::Axis::Z)
+            }
+            None => View::Oblique(jstsph_output::plot::Axis::Y),
+        }
+    }
+}
+
+impl ValueRange {
+    /// The ends, if their unit is that of the field.
+    fn values(&self, field: &str, unit: &str) -> Result<(f64, f64), CliError> {
+        let fits = |measure: &Measure| match measure.to_string().as_str() {
+            "1" => unit.is_empty(),
+            other => other == unit,
+        };
+        match self.measures.iter().flatten().find(|m| !fits(m)) {
+            None => Ok((self.from, self.to)),
+            Some(measure) => Err(CliError::RangeUnit {
+                field: field.to_owned(),
+                found: measure.description(),
+                unit: if unit.is_empty() { "1" } else { unit }.to_owned(),
+            }),
+        }
+    }
+}
+
+/// The particles to draw, by index, and cells between them, by place in that list.
+struct Shown {
+    particles: Vec<usize>,
+    cells: Vec<[usize; 4]>,
+}
+
+/// Draws the chosen frames side by side.
+pub(super) fn figure(
+    case: &Case,
+    chosen: &[Chosen],
+    name: &str,
+    look: &Look,
+) -> Result<Figure, CliError> {
+    let sight = Sight::new(case, look);
+    let reference: Vec<Vec3> = case
+        .model
+        .bodies
+        .iter()
+        .flat_map(|body| body.body.positions.iter().copied())
+        .collect();
+    let spacing = case
+        .model
+        .bodies
+        .iter()
+        .map(|body| body.body.spacing)
+        .fold(f64::INFINITY, f64::min);
+    let (low, high) = box_of(&reference);
+    let middle = 0.5 * (low + high);
+    let shown = select(case, &reference, sight, &middle, spacing);
+
+    let mut positions = Vec::with_capacity(chosen.len());
+    let mut values = Vec::with_capacity(chosen.len());
+    for Chosen { frame } in chosen {
+        if frame.positions.len() != reference.len() {
+            return Err(CliError::ForeignFrame {
+                found: frame.positions.len(),
+                expected: reference.len(),
+            });
+        }
+        let all = field::values(frame, name)?;
+        values.push(shown.particles.iter().map(|&a| all[a]).collect::<Vec<_>>());
+        let picked = shown.particles.iter().map(|&a| frame.positions[a]);
+        positions.push(picked.collect::<Vec<Vec3>>());
+    }
+    let quantity = field::quantity(&chosen[0].frame, name);
+    let (colours, range) = field::colours(values.iter().flatten().copied());
+    let range = match &look.range {
+        Some(range) => Some(range.values(name, &quantity.unit)?),
+        None => range,
+    };
+    let plots: Vec<ParticlePlot> = chosen
+        .iter()
+        .zip(&positions)
+        .zip(&values)
+        .map(|((chosen, positions), values)| ParticlePlot {
+            title: chosen.title(),
+            view: sight.view(case),
+            cells: &shown.cells,
+            walls: lines::walls(case, sight, &middle, positions, chosen.frame.time),
+            undeformed: if chosen.frame.time > 0.0 {
+                lines::undeformed(case, sight)
+            } else {
+                Vec::new()
+            },
+            colours,
+            range,
+            ..ParticlePlot::new(
+                positions,
+                values,
+                quantity.name.clone(),
+                quantity.unit.clone(),
+                spacing,
+            )
+        })
+        .collect();
+    Figure::panels(heading(case), &plots).map_err(CliError::Picture)
+}
+
+fn select(case: &Case, reference: &[Vec3], sight: Sight, middle: &Vec3, spacing: f64) -> Shown {
+    let mut shown = Shown {
+        particles: Vec::new(),
+        cells: Vec::new(),
+    };
+    let mut first = 0;
+    for body in &case.model.bodies {
+        let body = &body.body;
+        let range = first..first + body.positions.len();
+        let place = shown.particles.len();
+        match (sight.plane, sight.is_cut) {
+            (Some(axes), true) => {
+                let normal = axes[2];
+                let distance =
+                    |a: &usize, from: f64| (reference[*a][normal] - from).abs() / spacing;
+                let nearest = range.clone().min_by(|a, b| {
+                    distance(a, middle[normal]).total_cmp(&distance(b, middle[normal]))
+                });
+                let at = nearest.map_or(0.0, |a| reference[a][normal]);
+                let within = |limit: f64| -> Vec<usize> {
+                    range.clone().filter(|a| distance(a, at) <= limit).collect()
+                };
+                let mut layer = within(SAME_LAYER);
+                let cells = sheet(reference, &layer, axes, spacing);
+                if cells.is_empty() {
+                    layer = within(0.5);
+                }
+                shown.particles.extend(layer);
+                shown
+                    .cells
+                    .extend(cells.iter().map(|cell| cell.map(|a| place + a)));
+            }
+            (None, true) => {
+                // The oblique view looks towards y: what is in front of the cut goes.
+                let half = range
+                    .clone()
+                    .filter(|&a| reference[a].y >= middle.y - SAME_LAYER * spacing);
+                shown.particles.extend(half);
+            }
+            (_, false) => {
+                shown.particles.extend(range.clone());
+                if let Cells::Quads(cells) = &body.cells {
+                    let moved = cells.iter().map(|cell| cell.map(|a| place + a as usize));
+                    shown.cells.extend(moved);
+                }
+            }
+        }
+        first = range.end;
+    }
+    shown
+}
+
+/// Quadrilaterals between the particles of a layer that stand on the crossings of two sets of
+/// lines, by place in the layer.
+fn sheet(reference: &[Vec3], layer: &[usize], axes: [usize; 3], spacing: f64) -> Vec<[usize; 4]> {
+    let lines = [axes[0], axes[1]].map(|axis| {
+        let mut coordinates: Vec<f64> = layer.iter().map(|&a| reference[a][axis]).collect();
+        coordinates.sort_by(f64::total_cmp);
+        coordinates.dedup_by(|a, b| (*a - *b).abs() <= SAME_LAYER * spacing);
+        coordinates
+    });
+    let line = |i: usize, coordinate: f64| {
+        lines[i].partition_point(|other| *other < coordinate - SAME_LAYER * spacing)
+    };
+    let crossings: std::collections::HashMap<[usize; 2], usize> = layer
+        .iter()
+        .enumerate()
+        .map(|(place, &a)| {
+            let x = &reference[a];
+            ([line(0, x[axes[0]]), line(1, x[axes[1]])], place)
+        })
+        .collect();
+    (0..layer.len())
+        .filter_map(|place| {
+            let x = &reference[layer[place]];
+            let [i, j] = [line(0, x[axes[0]]), line(1, x[axes[1]])];
+            let corner = |i: usize, j: usize| crossings.get(&[i, j]).copied();
+            Some([
+                corner(i, j)?,
+                corner(i + 1, j)?,
+                corner(i + 1, j + 1)?,
+                corner(i, j + 1)?,
+            ])
+        })
+        .collect()
+}
+
+/// Lowest and highest coordinates.
+pub(super) fn box_of(points: &[Vec3]) -> (Vec3, Vec3) {
+    let start = (Vec3::repeat(f64::MAX), Vec3::repeat(f64::MIN));
+    points
+        .iter()
+        .fold(start, |(low, high), x| (low.inf(x), high.sup(x)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sheet_joins_the_points_of_a_layer_and_leaves_holes_open() {
+        // Three by three points with uneven distances in the x-z plane, one corner missing.
+        let mut points = Vec::new();
+        for z in [0.0, 1.0, 3.0] {
+            for x in [0.0, 0.5, 2.0] {
+                points.push(Vec3::new(x, 7.0, z));
+            }
+        }
+        let layer: Vec<usize> = (0..8).collect();
+        let cells = sheet(&points, &layer, [0, 2, 1], 0.5);
+        assert_eq!(cells, [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6]]);
+        assert!(sheet(&points, &[0, 1, 2], [0, 2, 1], 0.5).is_empty());
+    }
+
+    #[test]
+    fn a_cylinder_is_cut_through_its_axis() {
+        let case = |shape: &str| {
+            let text = format!(
+                "dimension = \"3d\"\n[time]\nend = 1e-6\n[[body]]\nname = \"b\"\nshape = {shape}\n\
+                 lattice = {{ per_radius = 2, layers = 4 }}\nmaterial = \"copper_taylor\"\n"
+            );
+            jstsph_case::parse("b", "b.toml", &text, &[]).expect("a case")
+        };
+        let upright = case(
+            "{ cylinder = { base = [0, 0, 0], axis = \"z\", radius = 0.002, height = 0.003 } }",
+        );
+        let sight = Sight::new(&upright, &Look::default());
+        assert_eq!(sight.plane, Some([0, 2, 1]));
+        let positions = &upright.model.bodies[0].body.positions;
+        let shown = select(
+            &upright,
+            positions,
+            sight,
+            &Vec3::new(0.0, 0.0, 1.5e-3),
+            1e-3,
+        );
+        // Five points across, four layers; every gap between four of them is a cell.
+        assert_eq!((shown.particles.len(), shown.cells.len()), (20, 12));
+        let across = case(
+            "{ cylinder = { base = [0, 0, 0], axis = \"y\", radius = 0.002, height = 0.003 } }",
+        );
+        assert_eq!(Sight::new(&across, &Look::default()).plane, Some([0, 1, 2]));
+        let outside = Look {
+            view: Some(ViewName::Xz),
+            ..Look::default()
+        };
+        assert!(!Sight::new(&upright, &outside).is_cut);
+    }
+}

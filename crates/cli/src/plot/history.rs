@@ -1,0 +1,423 @@
+//! Curves of `history.csv` over time.
+
+use jstsph_case::Case;
+use jstsph_geometry::Dimension;
+use jstsph_output::plot::{Figure, LinePlot, Quantity, Series, SeriesStyle};
+use jstsph_output::{HISTORY_COLUMNS, OutputError, Table};
+use jstsph_solver::{Field, ProbeKind, Simulation};
+use jstsph_tensor::Vec3;
+
+use super::{heading, moment};
+use crate::error::CliError;
+
+/// Sets of columns with a name.
+const SETS: [&str; 4] = ["energies", "balance", "time_step", "probes"];
+
+/// Part of the largest energy from which a kind of energy is worth a curve.
+const VISIBLE: f64 = 1e-4;
+
+/// Draws a named set of columns, or columns by name separated by commas. Also gives the name of
+/// the file.
+pub(super) fn figure(case: &Case, table: &Table, what: &str) -> Result<(Figure, String), CliError> {
+    let history = History { case, table };
+    let plots = match what.trim() {
+        "energies" => vec![history.energies()?],
+        "balance" => vec![history.balance()?],
+        "time_step" => vec![history.time_step()?],
+        "probes" => history.probes()?,
+        columns => {
+            let names: Vec<&str> = columns.split(',').map(str::trim).collect();
+            for name in &names {
+                history.known(name)?;
+            }
+            history.by_unit(&names)?
+        }
+    };
+    let figure = Figure::stack(heading(case), &plots).map_err(CliError::Picture)?;
+    let name = what.trim().replace([',', ' '], "-");
+    Ok((figure, format!("{name}.png")))
+}
+
+struct History<'a> {
+    case: &'a Case,
+    table: &'a Table,
+}
+
+impl History<'_> {
+    fn energies(&self) -> Result<LinePlot, CliError> {
+        let stored = ["kinetic", "elastic", "plastic", "numerical", "hourglass"];
+        let columns = stored
+            .map(|kind| self.column(&format!("{kind}_energy")))
+            .into_iter()
+            .collect::<Result<Vec<_>, _>>()?;
+        let work = [
+            self.column("external_energy")?,
+            self.column("contact_energy")?,
+        ];
+        let rows = self.table.rows.len();
+        let sum = |columns: &[Vec<f64>], row: usize| columns.iter().map(|c| c[row]).sum::<f64>();
+        let total: Vec<f64> = (0..rows).map(|row| sum(&columns, row)).collect();
+        let start = total.first().copied().unwrap_or(0.0);
+        let supplied: Vec<f64> = (0..rows).map(|row| start + sum(&work, row)).collect();
+        let largest = |values: &[f64]| values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        let mut series = Vec::new();
+        for (kind, column) in stored.iter().zip(&columns) {
+            if largest(column) > VISIBLE * largest(&total) {
+                series.push(self.series(kind, column)?);
+            }
+        }
+        series.push(self.series("sum", &total)?);
+        series.push(Series {
+            style: SeriesStyle::Dashed,
+            ..self.series("initial + work", &supplied)?
+        });
+        Ok(LinePlot {
+            x: time(),
+            y: Quantity::new("energy", self.per_thickness("J")),
+            series,
+            ..LinePlot::default()
+        })
+    }
+
+    fn balance(&self) -> Result<LinePlot, CliError> {
+        let mut percent = self.column("energy_balance")?;
+        percent.iter_mut().for_each(|value| *value *= 100.0);
+        Ok(LinePlot {
+            x: time(),
+            y: Quantity::new("energy balance, % of the largest energy", ""),
+            series: vec![self.series("balance", &percent)?],
+            ..LinePlot::default()
+        })
+    }
+
+    fn time_step(&self) -> Result<LinePlot, CliError> {
+        let mut steps = self.column("dt")?;
+        // Before the first step there is none.
+        steps.iter_mut().for_each(|dt| {
+            if *dt == 0.0 {
+                *dt = f64::NAN;
+            }
+        });
+        Ok(LinePlot {
+            x: time(),
+            y: Quantity::new("time step", "s"),
+            series: vec![self.series("time step", &steps)?],
+            ..LinePlot::default()
+        })
+    }
+
+    /// Numbers over time, and lines of points as profiles at the last time they have values.
+    fn probes(&self) -> Result<Vec<LinePlot>, CliError> {
+        let mut numbers = Vec::new();
+        let mut profiles = Vec::new();
+        for probe in &self.case.probes {
+            let columns = Simulation::probe_columns(probe);
+            match &probe.kind {
+                ProbeKind::Line {
+                    from, to, field, ..
+                } => profiles.extend(self.profile(&probe.name, &columns, *field, [from, to])?),
+                _ => numbers.extend(columns),
+            }
+        }
+        let names: Vec<&str> = numbers.iter().map(String::as_str).collect();
+        let mut plots = self.by_unit(&names)?;
+        // Profiles of one quantity share a diagram.
+        for profile in profiles {
+            let same = plots
+                .iter_mut()
+                .find(|plot: &&mut LinePlot| plot.x == profile.x && plot.y == profile.y);
+            match same {
+                Some(plot) => plot.series.extend(profile.series),
+                None => plots.push(profile),
+            }
+        }
+        if plots.is_empty() {
+            return Err(CliError::Picture(OutputError::NothingToDraw {
+                title: heading(self.case).to_owned(),
+                reason: "no probe has a value",
+            }));
+        }
+        Ok(plots)
+    }
+
+    fn profile(
+        &self,
+        name: &str,
+        columns: &[String],
+        field: Field,
+        [from, to]: [&Vec3; 2],
+    ) -> Result<Option<LinePlot>, CliError> {
+        let values = columns
+            .iter()
+            .map(|column| self.column(column))
+            .collect::<Result<Vec<_>, _>>()?;
+        let times = self.column("time")?;
+        let has_values = |row: &usize| values.iter().any(|column| column[*row].is_finite());
+        let Some(row) = (0..times.len()).rev().find(has_values) else {
+            return Ok(None);
+        };
+        let length = (to - from).norm();
+        let last = (columns.len().max(2) - 1) as f64;
+        let points = values
+            .iter()
+            .enumerate()
+            .map(|(i, column)| (length * i as f64 / last, column[row]))
+            .filter(|(_, value)| value.is_finite());
+        let (number, unit) = moment(times[row]);
+        let (label, field_unit) = described(field);
+        Ok(Some(LinePlot {
+            x: Quantity::new("distance along the line", "m"),
+            y: Quantity::new(label, field_unit),
+            series: vec![Series {
+                label: format!("{}, t = {number} {unit}", name.replace('_', " ")),
+                points: points.collect(),
+                style: SeriesStyle::LineWithMarkers,
+            }],
+            ..LinePlot::default()
+        }))
+    }
+
+    /// One diagram for each unit among the columns, in their order.
+    fn by_unit(&self, names: &[&str]) -> Result<Vec<LinePlot>, CliError> {
+        let mut plots: Vec<LinePlot> = Vec::new();
+        for name in names {
+            let unit = self.unit(name);
+            let series = self.series(name, &self.column(name)?)?;
+            if series.points.is_empty() {
+                continue;
+            }
+            match plots.iter_mut().find(|plot| plot.y.unit == unit) {
+                Some(plot) => {
+                    plot.y.name = common_name(&unit).to_owned();
+                    plot.series.push(series);
+                }
+                None => plots.push(LinePlot {
+                    x: time(),
+                    y: Quantity::new(series.label.clone(), unit),
+                    series: vec![series],
+                    ..LinePlot::default()
+                }),
+            }
+        }
+        Ok(plots)
+    }
+
+    /// A curve over time, without the rows in which the column has no value.
+    fn series(&self, name: &str, values: &[f64]) -> Result<Series, CliError> {
+        let times = self.column("time")?;
+        let points = times.into_iter().zip(values.iter().copied());
+        Ok(Series {
+            label: name.replace('_', " "),
+            points: points.filter(|(_, value)| value.is_finite()).collect(),
+            style: SeriesStyle::Line,
+        })
+    }
+
+    fn column(&self, name: &str) -> Result<Vec<f64>, CliError> {
+        self.table.column(name).ok_or_else(|| {
+            CliError::Picture(OutputError::NoColumn {
+                column: name.to_owned(),
+                columns: self.table.columns.clone(),
+            })
+        })
+    }
+
+    fn known(&self, name: &str) -> Result<(), CliError> {
+        if self.table.columns.iter().any(|column| column == name) {
+            return Ok(());
+        }
+        let sets = SETS.map(str::to_owned).into_iter();
+        Err(CliError::UnknownName {
+            what: "set or column of history.csv",
+            name: name.to_owned(),
+            allowed: sets.chain(self.table.columns.iter().cloned()).collect(),
+        })
+    }
+
+    /// SI unit of a column, empty for a pure number.
+    fn unit(&self, name: &str) -> String {
+        if let Some(column) = HISTORY_COLUMNS.iter().find(|column| column.name == name) {
+            return match column.unit {
+                "-" => String::new(),
+                "J" => self.per_thickness("J"),
+                unit => unit.to_owned(),
+            };
+        }
+        for probe in &self.case.probes {
+            if Simulation::probe_columns(probe).iter().any(|c| c == name) {
+                return match &probe.kind {
+                    ProbeKind::Extent { .. } | ProbeKind::Radius { .. } => "m",
+                    ProbeKind::Statistic { field, .. }
+                    | ProbeKind::Point { field, .. }
+                    | ProbeKind::Line { field, .. } => described(*field).1,
+                }
+                .to_owned();
+            }
+        }
+        if name.starts_with("force_") {
+            self.per_thickness("N")
+        } else if name.starts_with("angular_momentum_") {
+            self.per_thickness("N m s")
+        } else if name.starts_with("momentum_") {
+            self.per_thickness("N s")
+        } else {
+            String::new()
+        }
+    }
+
+    /// A unit of a whole body: per metre of thickness in plane strain.
+    fn per_thickness(&self, unit: &str) -> String {
+        match self.case.model.dimension {
+            Dimension::PlaneStrain => format!("{unit}/m"),
+            Dimension::Solid => unit.to_owned(),
+        }
+    }
+}
+
+fn time() -> Quantity {
+    Quantity::new("time", "s")
+}
+
+/// Name and SI unit of a probe's field.
+fn described(field: Field) -> (&'static str, &'static str) {
+    match field {
+        Field::EquivalentPlasticStrain => ("equivalent plastic strain", ""),
+        Field::VonMisesStress => ("von Mises stress", "Pa"),
+        Field::Pressure => ("pressure, tension positive", "Pa"),
+        Field::Jacobian => ("volume ratio J", ""),
+        Field::WaveSpeed => ("wave speed", "m/s"),
+        Field::Displacement(_) => ("displacement", "m"),
+        Field::Position(_) => ("position", "m"),
+        Field::Velocity(_) => ("velocity", "m/s"),
+    }
+}
+
+/// What several columns of one unit have in common.
+fn common_name(unit: &str) -> &'static str {
+    match unit {
+        "J" | "J/m" => "energy",
+        "N" | "N/m" => "force",
+        "Pa" => "stress",
+        "m" => "length",
+        "s" => "time",
+        "m/s" => "velocity",
+        "N s" | "N s/m" => "momentum",
+        "N m s" | "N m s/m" => "angular momentum",
+        _ => "value",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CASE: &str = r#"
+dimension = "plane-strain"
+[time]
+end = 1e-3
+[[body]]
+name = "block"
+shape = { box = { min = [0, 0], max = [0.004, 0.006] } }
+lattice = { counts = [5, 7] }
+material = "copper_taylor"
+[[probe]]
+name = "length"
+extent = { where = "block", axis = "y" }
+[[probe]]
+name = "peak"
+statistic = { where = "block", field = "pressure", of = "max" }
+[[probe]]
+name = "cut"
+line = { from = [0, 0.003], to = [0.004, 0.003], count = 3, field = "pressure" }
+"#;
+
+    fn case() -> Case {
+        jstsph_case::parse("b", "b.toml", CASE, &[]).expect("a case")
+    }
+
+    /// Three rows in which column `i` grows from `i`; the profile has no value in the last.
+    fn table() -> Table {
+        let mut columns: Vec<String> = HISTORY_COLUMNS.iter().map(|c| c.name.to_owned()).collect();
+        for name in ["force_die_y", "length", "peak", "cut_1", "cut_2", "cut_3"] {
+            columns.push(name.to_owned());
+        }
+        let rows = (0..3).map(|row| {
+            let value = |(i, name): (usize, &String)| match row {
+                2 if name.starts_with("cut") => f64::NAN,
+                _ => i as f64 + f64::from(row),
+            };
+            columns.iter().enumerate().map(value).collect()
+        });
+        Table {
+            rows: rows.collect(),
+            columns: columns.clone(),
+        }
+    }
+
+    #[test]
+    fn energies_are_per_thickness_and_compared_with_what_was_supplied() {
+        let (case, table) = (case(), table());
+        let history = History {
+            case: &case,
+            table: &table,
+        };
+        let plot = history.energies().unwrap();
+        assert_eq!(plot.y, Quantity::new("energy", "J/m"));
+        let last = |label: &str| {
+            let series = plot.series.iter().find(|series| series.label == label);
+            series.unwrap().points[2].1
+        };
+        // Five kinds that start at 3 to 7, work that starts at 8 and 9.
+        assert_eq!(last("sum"), 25.0 + 5.0 * 2.0);
+        assert_eq!(last("initial + work"), 25.0 + 17.0 + 2.0 * 2.0);
+        assert_eq!(plot.series.len(), 7);
+    }
+
+    #[test]
+    fn probes_are_grouped_by_unit_and_lines_are_profiles() {
+        let (case, table) = (case(), table());
+        let history = History {
+            case: &case,
+            table: &table,
+        };
+        let plots = history.probes().unwrap();
+        let labels: Vec<String> = plots
+            .iter()
+            .map(|plot| format!("{} ({})", plot.y.name, plot.y.unit))
+            .collect();
+        assert_eq!(
+            labels,
+            ["length (m)", "peak (Pa)", "pressure, tension positive (Pa)"]
+        );
+        let first = table.columns.iter().position(|c| c == "cut_1").unwrap() as f64;
+        let profile = &plots[2].series[0];
+        assert_eq!(profile.label, "cut, t = 1 s");
+        let expected = [
+            (0.0, first + 1.0),
+            (0.002, first + 2.0),
+            (0.004, first + 3.0),
+        ];
+        for (point, expected) in profile.points.iter().zip(expected) {
+            assert!((point.0 - expected.0).abs() < 1e-15 && point.1 == expected.1);
+        }
+    }
+
+    #[test]
+    fn unknown_columns_are_refused_with_all_names() {
+        let message = figure(&case(), &table(), "dt,kinetic")
+            .unwrap_err()
+            .to_string();
+        assert!(
+            message.starts_with("unknown set or column of history.csv `kinetic`"),
+            "{message}"
+        );
+        for name in [
+            "energies, balance, time_step, probes",
+            "kinetic_energy",
+            "cut_3",
+        ] {
+            assert!(message.contains(name), "{message}");
+        }
+        assert!(figure(&case(), &table(), "dt, force_die_y").is_ok());
+    }
+}
