@@ -38,7 +38,7 @@ pub(crate) fn run(options: &CheckOptions, console: &mut Console<'_>) -> Result<u
 fn describe(case: &Case, mut simulation: Simulation, threads: usize) -> String {
     let reference = simulation.reference();
     let mut text = format!("{}: {}\n", case.name, case.title);
-    for (body, input) in reference.bodies.iter().zip(&case.model.bodies) {
+    for (index, (body, input)) in reference.bodies.iter().zip(&case.model.bodies).enumerate() {
         let neighbours = body.gradient.entry_count() as f64 / body.gradient.points().max(1) as f64;
         let _ = writeln!(
             text,
@@ -54,6 +54,14 @@ fn describe(case: &Case, mut simulation: Simulation, threads: usize) -> String {
             body.spacing,
             input.material.name(),
             body.wave_speed
+        );
+        // How far a constant stress is from giving no force inside: an error that does not converge.
+        let inner = |a: usize| !input.body.boundary[a];
+        let _ = writeln!(
+            text,
+            "    smoothing length {:.4e} m; summation by parts holds to {:.1e} of a face inside",
+            body.support.smoothing_length,
+            reference.summation_defect(index, inner)
         );
     }
     for condition in &case.model.conditions {

@@ -8,7 +8,7 @@ use jstsph_output::{
     CellKind, Energies, Extremes, Frame, FrameOptions, FrameSeries, HISTORY_COLUMNS, HistoryRow,
     HistoryWriter, Lattice, OutputError, ResultsFolder, write_restart,
 };
-use jstsph_solver::{ParticleFields, Saved, Simulation};
+use jstsph_solver::{ConditionKind, ParticleFields, Saved, Simulation};
 
 use crate::error::CliError;
 use crate::restart::{LastRow, encode};
@@ -40,6 +40,18 @@ enum OwnedCells {
     Hexahedra(Vec<[usize; 8]>),
 }
 
+/// The quantities of Greto & Kulasegaram 2019, (4.1), for the last time step.
+const PAPER_COLUMNS: [&str; 3] = [
+    "paper_internal_energy",
+    "paper_plastic_dissipation",
+    "paper_jst_dissipation",
+];
+
+/// `force_` and a name without blanks.
+fn force_column(name: &str) -> String {
+    format!("force_{}", name.replace(char::is_whitespace, "_"))
+}
+
 /// Names of the history's columns after the fixed ones.
 ///
 /// # Errors
@@ -54,8 +66,13 @@ pub(crate) fn extra_columns(case: &Case) -> Result<Vec<String>, CliError> {
     let mut columns = named("momentum", axes);
     columns.extend(named("angular_momentum", rotations));
     for obstacle in &case.model.obstacles {
-        columns.extend(named(&format!("force_{}", obstacle.obstacle.name), axes));
+        columns.extend(named(&force_column(&obstacle.obstacle.name), axes));
     }
+    let prescribed = |kind: &ConditionKind| matches!(kind, ConditionKind::Velocity(_));
+    for condition in case.model.conditions.iter().filter(|c| prescribed(&c.kind)) {
+        columns.extend(named(&force_column(&condition.name), axes));
+    }
+    columns.extend(PAPER_COLUMNS.map(str::to_owned));
     for probe in &case.probes {
         for column in Simulation::probe_columns(probe) {
             if columns.contains(&column) || HISTORY_COLUMNS.iter().any(|fixed| fixed.name == column)
@@ -228,6 +245,8 @@ impl<'a> Recorder<'a> {
             };
             extra.extend(axes.iter().map(|axis| force[*axis]));
         }
+        let paper = simulation.paper_energies();
+        extra.extend([paper.internal, paper.plastic, paper.jst]);
         extra.extend(
             probe_values(self.case, simulation, fields)
                 .into_iter()
@@ -319,10 +338,13 @@ fn next_multiple(time: f64, interval: f64) -> f64 {
     if next > time { next } else { next + interval }
 }
 
+/// Impulse on every obstacle, then of every prescribed velocity on its particles.
 fn impulses(simulation: &Simulation) -> Vec<jstsph_tensor::Vec3> {
-    simulation
-        .obstacle_impulses()
+    let on_obstacles = simulation.obstacle_impulses();
+    let of_conditions = simulation.condition_impulses();
+    on_obstacles
         .into_iter()
+        .chain(of_conditions)
         .map(|(_, impulse)| impulse)
         .collect()
 }

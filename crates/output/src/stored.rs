@@ -228,18 +228,14 @@ impl<'a> File<'a> {
         if corners.iter().any(|corner| *corner >= points) {
             return Err(damaged());
         }
-        // VTK's numbers for vertex, quadrilateral and hexahedron.
-        let (size, is_known) = match kind {
-            1 => (1, true),
-            9 => (4, true),
-            12 => (8, true),
-            _ => (1, false),
-        };
-        if !is_known || kinds.iter().any(|other| *other != kind) {
+        // VTK's numbers for vertex, quadrilateral and hexahedron, and their corners.
+        let known = [(1, 1), (9, 4), (12, 8)];
+        let known = known.iter().find(|(number, _)| *number == kind);
+        let Some((_, size)) = known.filter(|_| kinds.iter().all(|other| *other == kind)) else {
             return Err(FrameProblem::Kind {
                 array: "types".to_owned(),
             });
-        }
+        };
         if corners.len() != size * kinds.len() {
             return Err(damaged());
         }

@@ -33,7 +33,8 @@ pub(crate) fn step(simulation: &mut Simulation, end: f64) -> Result<(), SolverEr
         simulation.kick(Kick::Opening, 0.5 * simulation.dt, simulation.dt);
         simulation.synchronised = false;
     }
-    let dt = simulation.dt;
+    // Shorter than the travel that was planned only if `end` was moved back since.
+    let dt = simulation.dt.min(end - simulation.time);
     simulation.move_particles(dt);
     simulation.velocity_gradient();
     simulation.drift_strains(dt);

@@ -72,6 +72,9 @@ pub(crate) struct Workspace {
     /// G and F averaged to the particles, for the pair stabilisations with bonds.
     pub(crate) particle_velocity_gradient: Vec<Mat3>,
     pub(crate) particle_deformation_gradient: Vec<Mat3>,
+    /// Stress of the hourglass stiffness: P at the particles, V P at the points.
+    pub(crate) hourglass_stress: Vec<Mat3>,
+    pub(crate) hourglass_point_stress: Vec<Mat3>,
 }
 
 impl Workspace {
@@ -93,6 +96,8 @@ impl Workspace {
             jacobian_laplacian: vec![0.0; particles],
             particle_velocity_gradient: vec![Mat3::zeros(); averaged],
             particle_deformation_gradient: vec![Mat3::zeros(); averaged],
+            hourglass_stress: vec![Mat3::zeros(); averaged],
+            hourglass_point_stress: vec![Mat3::zeros(); if pairs { points } else { 0 }],
         }
     }
 }

@@ -103,7 +103,7 @@ pub(super) fn figure(
         .iter()
         .map(|body| body.body.spacing)
         .fold(f64::INFINITY, f64::min);
-    let (low, high) = box_of(&reference);
+    let (low, high) = box_of(reference.iter());
     let middle = 0.5 * (low + high);
     let shown = select(case, &reference, sight, &middle, spacing);
 
@@ -127,6 +127,7 @@ pub(super) fn figure(
         Some(range) => Some(range.values(name, &quantity.unit)?),
         None => range,
     };
+    let corners = box_of(positions.iter().flatten());
     let plots: Vec<ParticlePlot> = chosen
         .iter()
         .zip(&positions)
@@ -135,7 +136,7 @@ pub(super) fn figure(
             title: chosen.title(),
             view: sight.view(case),
             cells: &shown.cells,
-            walls: lines::walls(case, sight, &middle, positions, chosen.frame.time),
+            walls: lines::walls(case, sight, &middle, corners, chosen.frame.time),
             undeformed: if chosen.frame.time > 0.0 {
                 lines::undeformed(case, sight)
             } else {
@@ -243,11 +244,9 @@ fn sheet(reference: &[Vec3], layer: &[usize], axes: [usize; 3], spacing: f64) ->
 }
 
 /// Lowest and highest coordinates.
-pub(super) fn box_of(points: &[Vec3]) -> (Vec3, Vec3) {
+fn box_of<'a>(points: impl Iterator<Item = &'a Vec3>) -> (Vec3, Vec3) {
     let start = (Vec3::repeat(f64::MAX), Vec3::repeat(f64::MIN));
-    points
-        .iter()
-        .fold(start, |(low, high), x| (low.inf(x), high.sup(x)))
+    points.fold(start, |(low, high), x| (low.inf(x), high.sup(x)))
 }
 
 #[cfg(test)]

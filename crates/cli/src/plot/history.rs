@@ -188,8 +188,8 @@ impl History<'_> {
             }
             match plots.iter_mut().find(|plot| plot.y.unit == unit) {
                 Some(plot) => {
-                    plot.y.name = common_name(&unit).to_owned();
                     plot.series.push(series);
+                    plot.y.name = common_name(&plot.series, &unit);
                 }
                 None => plots.push(LinePlot {
                     x: time(),
@@ -292,8 +292,29 @@ fn described(field: Field) -> (&'static str, &'static str) {
     }
 }
 
-/// What several columns of one unit have in common.
-fn common_name(unit: &str) -> &'static str {
+/// What several columns of one unit have in common: the last words of their names, or else what
+/// the unit measures.
+fn common_name(series: &[Series], unit: &str) -> String {
+    let words = |series: &Series| -> Vec<String> {
+        let words = series.label.split(' ').rev().map(str::to_owned);
+        words.collect()
+    };
+    let mut common = words(&series[0]);
+    for other in &series[1..] {
+        let other = words(other);
+        let same = common.iter().zip(&other).take_while(|(a, b)| a == b);
+        let same = same.count();
+        common.truncate(same);
+    }
+    if common.iter().any(|word| word.len() > 1) {
+        common.reverse();
+        return common.join(" ");
+    }
+    measured(unit).to_owned()
+}
+
+/// What a unit measures.
+fn measured(unit: &str) -> &'static str {
     match unit {
         "J" | "J/m" => "energy",
         "N" | "N/m" => "force",
@@ -400,6 +421,24 @@ line = { from = [0, 0.003], to = [0.004, 0.003], count = 3, field = "pressure" }
         for (point, expected) in profile.points.iter().zip(expected) {
             assert!((point.0 - expected.0).abs() < 1e-15 && point.1 == expected.1);
         }
+    }
+
+    #[test]
+    fn curves_in_common_are_named_after_their_last_words() {
+        let series = |labels: &[&str]| -> Vec<Series> {
+            let series = labels.iter().map(|label| Series {
+                label: (*label).to_owned(),
+                ..Series::default()
+            });
+            series.collect()
+        };
+        let strains = series(&["largest plastic strain", "mean plastic strain"]);
+        assert_eq!(common_name(&strains, ""), "plastic strain");
+        assert_eq!(common_name(&series(&["length", "radius"]), "m"), "length");
+        assert_eq!(
+            common_name(&series(&["force a x", "force b x"]), "N"),
+            "force"
+        );
     }
 
     #[test]

@@ -15,6 +15,8 @@ const GAP: f64 = 4.0;
 pub(crate) const BELOW: f64 = TICK + GAP + TICK_SIZE + 8.0 + LABEL_SIZE;
 /// Space of a title above the plot.
 pub(crate) const TITLE: f64 = TITLE_SIZE + 13.0;
+/// Least number of ticks that tell the scale of an axis.
+const FEW: usize = 3;
 /// Part of the size of a text by which its middle is above its baseline.
 pub(crate) const HALF_HEIGHT: f64 = 0.36;
 
@@ -219,23 +221,45 @@ impl Axes<'_> {
     }
 
     fn x_ticks(&self, width: f64) -> Vec<Tick> {
-        // Fewer ticks where their labels would touch.
-        let mut count = width / 75.0;
-        loop {
-            let ticks = self.rulers[0].ticks(count);
+        let fits = |ticks: &[Tick]| {
             let widest = ticks
                 .iter()
                 .map(|tick| text::width(&tick.label, TICK_SIZE))
                 .fold(0.0, f64::max);
-            if count < 1.5 || (widest + 10.0) * (ticks.len() as f64 - 1.0) <= width {
-                return ticks;
-            }
+            (widest + 10.0) * (ticks.len() as f64 - 1.0) <= width
+        };
+        // Fewer ticks where their labels would touch.
+        let mut count = width / 75.0;
+        let mut ticks = self.rulers[0].ticks(count);
+        while count >= 1.5 && !fits(&ticks) {
             count *= 0.7;
+            ticks = self.rulers[0].ticks(count);
         }
+        self.enough(0, ticks, count, fits)
     }
 
     fn y_ticks(&self, height: f64) -> Vec<Tick> {
-        self.rulers[1].ticks(height / 50.0)
+        let count = height / 50.0;
+        let fits = |ticks: &[Tick]| 2.0 * TICK_SIZE * ticks.len() as f64 <= height;
+        self.enough(1, self.rulers[1].ticks(count), count, fits)
+    }
+
+    /// More ticks where one or two would not tell the scale, if there is room for them.
+    fn enough(
+        &self,
+        axis: usize,
+        ticks: Vec<Tick>,
+        count: f64,
+        fits: impl Fn(&[Tick]) -> bool,
+    ) -> Vec<Tick> {
+        if ticks.len() >= FEW {
+            return ticks;
+        }
+        [1.5, 2.0, 3.0, 4.0]
+            .map(|more| self.rulers[axis].ticks(count * more))
+            .into_iter()
+            .find(|finer| finer.len() >= FEW && fits(finer))
+            .unwrap_or(ticks)
     }
 }
 
@@ -283,5 +307,21 @@ mod tests {
             ["0.02", "0.03", "0.05", "0.07"]
         );
         assert!((ruler(1e-2, 1e2).place(1.0) - 0.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_narrow_axis_about_zero_has_more_than_one_tick() {
+        let axes = Axes {
+            rulers: [Ruler::linear(-9.9, 9.9), Ruler::linear(0.0, 1.0)],
+            labels: ["", ""],
+            grid: false,
+            has_y_labels: true,
+        };
+        let labels = |width: f64| -> Vec<String> {
+            let ticks = axes.x_ticks(width);
+            ticks.into_iter().map(|tick| tick.label).collect()
+        };
+        assert_eq!(labels(240.0), ["−5", "0", "5"].map(str::to_owned).to_vec());
+        assert_eq!(labels(20.0), ["0"].map(str::to_owned).to_vec());
     }
 }

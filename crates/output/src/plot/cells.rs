@@ -7,9 +7,11 @@ use super::canvas::{Canvas, INK, Rect, Stroke, mix};
 use super::colorbar::ColourBar;
 use super::panels::Panel;
 
-/// Side of the pieces a cell is cut into, and the most pieces along a side.
-const PIECE: f64 = 5.0;
-const MOST_PIECES: usize = 16;
+/// Smallest side of the pieces a cell is cut into, and the most pieces along a side.
+const PIECE: f64 = 2.5;
+const MOST_PIECES: f64 = 48.0;
+/// Shades between the ends of the colour bar that pieces tell apart.
+const SHADES: f64 = 80.0;
 /// Smallest side of a cell whose edges are drawn.
 const SIDE_WITH_EDGES: f64 = 7.0;
 
@@ -46,35 +48,30 @@ struct Cell {
 
 impl Cell {
     fn draw(&self, canvas: &mut Canvas, frame: &Rect, bar: &ColourBar) {
-        let side = self.longest_side();
-        let is_plain = self.values.iter().all(|v| *v == self.values[0]);
-        let pieces = if is_plain {
-            1
-        } else {
-            ((side / PIECE).ceil() as usize).clamp(1, MOST_PIECES)
-        };
-        let at = |step: usize| step as f64 / pieces as f64;
-        for (i, j) in (0..pieces).flat_map(|i| (0..pieces).map(move |j| (i, j))) {
+        let [across, along] = [[0, 1, 3, 2], [0, 3, 1, 2]].map(|ends| self.pieces(ends, bar));
+        let at = |step: usize, pieces: usize| step as f64 / pieces as f64;
+        for (i, j) in (0..across).flat_map(|i| (0..along).map(move |j| (i, j))) {
             let steps = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]];
-            let points = steps.map(|[i, j]| self.place(at(i), at(j)));
+            let points = steps.map(|[i, j]| self.place(at(i, across), at(j, along)));
             if !points.iter().all(|&place| frame.contains(place)) {
                 continue;
             }
-            let half = 0.5 / pieces as f64;
-            let colour = bar.colour(self.value(at(i) + half, at(j) + half));
+            let middle = [at(2 * i + 1, 2 * across), at(2 * j + 1, 2 * along)];
+            let colour = bar.colour(self.value(middle[0], middle[1]));
             canvas.patch(points.to_vec(), colour);
         }
-        if side < SIDE_WITH_EDGES {
+        if self.longest_side() < SIDE_WITH_EDGES {
             return;
         }
-        for step in 0..pieces {
-            let (from, to) = (at(step), at(step + 1));
-            for [a, b] in [
-                [[from, 0.0], [to, 0.0]],
-                [[from, 1.0], [to, 1.0]],
-                [[0.0, from], [0.0, to]],
-                [[1.0, from], [1.0, to]],
-            ] {
+        for (pieces, is_across) in [(across, true), (along, false)] {
+            for (step, edge) in (0..pieces).flat_map(|step| [(step, 0.0), (step, 1.0)]) {
+                let [a, b] = [at(step, pieces), at(step + 1, pieces)].map(|place| {
+                    if is_across {
+                        [place, edge]
+                    } else {
+                        [edge, place]
+                    }
+                });
                 let ends = [a, b].map(|[s, t]| self.place(s, t));
                 if !ends.iter().all(|&place| frame.contains(place)) {
                     continue;
@@ -86,12 +83,22 @@ impl Cell {
         }
     }
 
+    /// Number of pieces along the two opposite sides with these ends.
+    fn pieces(&self, [a, b, c, d]: [usize; 4], bar: &ColourBar) -> usize {
+        let shades = |a: usize, b: usize| bar.share(self.values[b] - self.values[a]).abs() * SHADES;
+        let length = self.side(a, b).max(self.side(c, d));
+        let count = shades(a, b).max(shades(c, d)).min(length / PIECE);
+        count.ceil().clamp(1.0, MOST_PIECES) as usize
+    }
+
+    fn side(&self, a: usize, b: usize) -> f64 {
+        let [a, b] = [self.corners[a], self.corners[b]];
+        (b[0] - a[0]).hypot(b[1] - a[1])
+    }
+
     fn longest_side(&self) -> f64 {
         (0..4)
-            .map(|i| {
-                let [a, b] = [self.corners[i], self.corners[(i + 1) % 4]];
-                (b[0] - a[0]).hypot(b[1] - a[1])
-            })
+            .map(|i| self.side(i, (i + 1) % 4))
             .fold(0.0, f64::max)
     }
 

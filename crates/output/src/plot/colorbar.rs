@@ -58,20 +58,24 @@ impl ColourBar {
         self.colours.at(place)
     }
 
+    /// Part of the bar that a difference of values takes.
+    pub(super) fn share(&self, difference: f64) -> f64 {
+        difference / (self.upper - self.lower)
+    }
+
     fn ruler(&self) -> Ruler {
         Ruler::linear(self.lower * self.factor, self.upper * self.factor)
     }
 
     /// Width with tick labels and label.
     pub(super) fn space(&self) -> f64 {
-        let widest = self
-            .ruler()
-            .ticks(6.0)
+        // The height, and with it the number of ticks, is not known yet: up to eight fit.
+        let widest = [2.0, 3.0, 4.0, 6.0, 8.0]
             .iter()
+            .flat_map(|count| self.ruler().ticks(*count))
             .map(|tick| text::width(&tick.label, TICK_SIZE))
             .fold(0.0, f64::max);
-        // One digit more for bars that are drawn with other ticks than these.
-        WIDTH + TICK + 3.0 + widest + text::width("0", TICK_SIZE) + 6.0 + LABEL_SIZE
+        WIDTH + TICK + 3.0 + widest + 9.0 + LABEL_SIZE
     }
 
     /// Draws the bar beside the plot.

@@ -1,18 +1,14 @@
 //! Curves over a common axis.
 
-use super::axis::{
-    Axes, BELOW, HALF_HEIGHT, Ruler, Scale, TICK_SIZE, TITLE, TITLE_SIZE, draw_title,
-};
-use super::canvas::{Anchor, Canvas, Colour, PAPER, Rect, Stroke};
-use super::{Quantity, clip, text};
+use super::axis::{Axes, BELOW, Ruler, Scale, TITLE, TITLE_SIZE, draw_title};
+use super::canvas::{Canvas, Colour, PAPER, Rect, Stroke};
+use super::{Quantity, clip, legend, text};
 use crate::{OutputError, Table};
 
 const PLOT: [f64; 2] = [520.0, 330.0];
 /// Height of one of several diagrams.
 const LOW: f64 = 200.0;
 const MARGIN: f64 = 12.0;
-const KEY: f64 = 24.0;
-const KEY_HEIGHT: f64 = 20.0;
 /// Most points of a curve that are drawn: four per pixel of the plot.
 const MOST_POINTS: usize = 2_080;
 
@@ -166,7 +162,7 @@ impl<'a> Diagram<'a> {
             factors: [x_factor, y_factor],
             labels: [x_label, y_label],
             // A long legend needs its space.
-            height: height.max(KEY_HEIGHT * plot.series.len() as f64),
+            height: height.max(legend::ROW * plot.series.len() as f64),
         })
     }
 
@@ -199,7 +195,7 @@ impl<'a> Diagram<'a> {
             draw_series(canvas, frame, series.style, colour(index), &places);
         }
         axes.draw_above(canvas, frame);
-        draw_legend(canvas, self.plot, frame);
+        legend::draw(canvas, self.plot, frame);
         draw_title(canvas, frame, &self.plot.title);
     }
 }
@@ -220,7 +216,7 @@ pub(crate) fn draw(heading: &str, plots: &[LinePlot]) -> Result<Canvas, OutputEr
     let widest = |of: &dyn Fn(&Diagram) -> f64| diagrams.iter().map(of).fold(0.0, f64::max);
     let left = MARGIN + widest(&|diagram| diagram.axes().left_space(diagram.height));
     let right = left + PLOT[0];
-    let legend = widest(&|diagram| legend_width(diagram.plot));
+    let legend = widest(&|diagram| legend::width(diagram.plot));
     let title = widest(&|diagram| text::width(&diagram.plot.title, TITLE_SIZE))
         .max(text::width(heading, TITLE_SIZE));
 
@@ -293,7 +289,8 @@ fn ruler(
     (ruler, factor, label)
 }
 
-fn draw_series(
+/// Draws a curve.
+pub(super) fn draw_series(
     canvas: &mut Canvas,
     frame: &Rect,
     style: SeriesStyle,
@@ -336,57 +333,9 @@ fn thin(places: &[[f64; 2]]) -> Vec<[f64; 2]> {
     thinned
 }
 
-fn colour(index: usize) -> Colour {
+/// Colour of a curve by its number.
+pub(super) fn colour(index: usize) -> Colour {
     COLOURS[index % COLOURS.len()]
-}
-
-/// One curve with an empty or only label needs no legend.
-fn has_legend(plot: &LinePlot) -> bool {
-    plot.series.len() > 1
-}
-
-fn legend_width(plot: &LinePlot) -> f64 {
-    if !has_legend(plot) {
-        return MARGIN;
-    }
-    let widest = plot
-        .series
-        .iter()
-        .map(|series| text::width(&series.label, TICK_SIZE))
-        .fold(0.0, f64::max);
-    14.0 + KEY + 7.0 + widest
-}
-
-fn draw_legend(canvas: &mut Canvas, plot: &LinePlot, frame: &Rect) {
-    if !has_legend(plot) {
-        return;
-    }
-    let left = frame.right + 14.0;
-    for (index, series) in plot.series.iter().enumerate() {
-        let y = frame.top + KEY_HEIGHT * (index as f64 + 0.5);
-        let key = Rect {
-            left,
-            right: left + KEY,
-            top: y - 1.0,
-            bottom: y + 1.0,
-        };
-        let ends = [[key.left, y], [key.right, y]];
-        let colour = colour(index);
-        match series.style {
-            SeriesStyle::Line | SeriesStyle::Dashed => {
-                draw_series(canvas, &key, series.style, colour, &ends);
-            }
-            SeriesStyle::Markers | SeriesStyle::LineWithMarkers => {
-                if series.style == SeriesStyle::LineWithMarkers {
-                    draw_series(canvas, &key, SeriesStyle::Line, colour, &ends);
-                }
-                let middle = [[0.5 * (key.left + key.right), y]];
-                draw_series(canvas, &key, SeriesStyle::Markers, colour, &middle);
-            }
-        }
-        let at = [key.right + 7.0, y + HALF_HEIGHT * TICK_SIZE];
-        canvas.text(at, TICK_SIZE, Anchor::Start, &series.label);
-    }
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ mod clip;
 mod colorbar;
 mod colormap;
 mod hidden;
+mod legend;
 mod lines;
 mod panels;
 mod particles;

@@ -155,14 +155,19 @@ pub(crate) fn draw(heading: &str, plots: &[ParticlePlot]) -> Result<Canvas, Outp
         if !is_flat {
             walls::draw(&mut canvas, plot, &panel);
         }
-        draw_body(&mut canvas, plot, dots, &panel, &bar);
-        if is_flat {
-            walls::draw(&mut canvas, plot, &panel);
-        }
+        let cells = draw_body(&mut canvas, plot, dots, &panel, &bar);
         if shows_undeformed {
             for line in &plot.undeformed {
                 walls::draw_line(&mut canvas, plot, line, &panel, UNDEFORMED);
             }
+        }
+        if is_flat {
+            // Above the undeformed body, which often has edges in common with both.
+            for line in cells::outline(&cells) {
+                let line: Vec<Vec3> = line.iter().map(|&a| plot.positions[a]).collect();
+                walls::draw_line(&mut canvas, plot, &line, &panel, Stroke::solid(INK, 1.0));
+            }
+            walls::draw(&mut canvas, plot, &panel);
         }
     }
     panels.draw(&mut canvas);
@@ -172,17 +177,18 @@ pub(crate) fn draw(heading: &str, plots: &[ParticlePlot]) -> Result<Canvas, Outp
 
 const UNDEFORMED: Stroke = Stroke {
     colour: [138, 143, 150],
-    width: 1.1,
+    width: 1.0,
     dashed: true,
 };
 
+/// Draws cells and dots, and returns the cells that are shown.
 fn draw_body(
     canvas: &mut Canvas,
     plot: &ParticlePlot,
     mut dots: Vec<Dot>,
     panel: &Panel,
     bar: &ColourBar,
-) {
+) -> Vec<[usize; 4]> {
     let shown = plot
         .cells
         .iter()
@@ -195,12 +201,7 @@ fn draw_body(
     dots.retain(|dot| !is_in_cell[dot.particle]);
     draw_dots(canvas, plot, dots, panel, bar);
     cells::draw(canvas, plot, &cells, panel, bar);
-    if plot.view.plane().is_some() {
-        for line in cells::outline(&cells) {
-            let line: Vec<Vec3> = line.iter().map(|&a| plot.positions[a]).collect();
-            walls::draw_line(canvas, plot, &line, panel, Stroke::solid(INK, 0.9));
-        }
-    }
+    cells
 }
 
 fn draw_dots(
@@ -253,6 +254,13 @@ fn window(plots: &[ParticlePlot], dots: &[Vec<Dot>]) -> ([[f64; 2]; 2], bool) {
         for point in plot.undeformed.iter().flatten() {
             both.add(plot.project(point));
         }
+        if plot.view.plane().is_none() {
+            // A surface seen at an angle is only understood as a whole.
+            for point in plot.walls.iter().flat_map(|wall| &wall.line) {
+                body.add(plot.project(point));
+                both.add(plot.project(point));
+            }
+        }
     }
     let spacing = plots[0].spacing;
     let is_near = both.area(spacing) <= MOST_GROWTH * body.area(spacing);
@@ -285,9 +293,9 @@ impl Default for Extent {
 
 impl Extent {
     fn add(&mut self, point: [f64; 2]) {
-        for i in 0..2 {
-            self.lower[i] = self.lower[i].min(point[i]);
-            self.upper[i] = self.upper[i].max(point[i]);
+        for (i, coordinate) in point.into_iter().enumerate() {
+            self.lower[i] = self.lower[i].min(coordinate);
+            self.upper[i] = self.upper[i].max(coordinate);
         }
     }
 

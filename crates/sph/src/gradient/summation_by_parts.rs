@@ -98,7 +98,7 @@ fn bonds_nearly_sum_by_parts() {
     // At h = 0.8 the tails of three dimensions add up to more.
     assert_inner_defects(Form::Bonds, 3, &[(0.8, 7e-7), (1.0, 3e-4)]);
     for d in [2, 3] {
-        // 4h is three spacings: no bond sees a particle beyond those of the two cells around it.
+        // 2h = 1.5 spacings: the second node along a bond lies where the kernel ends.
         let (inner, _) = defects(&unit_box(11, d), Form::Bonds, 0.75);
         assert!(inner < 2e-14, "d = {d}: {inner:e}");
     }
