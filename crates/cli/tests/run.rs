@@ -207,7 +207,7 @@ fn a_failing_run_says_where_and_leaves_its_last_good_state() {
     for text in [
         "error: the run failed: ",
         "of body \"block\" at (",
-        "at t = ",
+        ", t = ",
         "time.cfl (now 4)",
         "the last good state",
     ] {

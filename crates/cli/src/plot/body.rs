@@ -179,8 +179,9 @@ fn select(case: &Case, reference: &[Vec3], sight: Sight, middle: &Vec3, spacing:
                     range.clone().filter(|a| distance(a, at) <= limit).collect()
                 };
                 let mut layer = within(SAME_LAYER);
-                let cells = sheet(reference, &layer, axes, spacing);
-                if cells.is_empty() {
+                let mut cells = sheet(reference, &layer, axes, spacing);
+                if !is_covered(layer.len(), &cells) {
+                    cells.clear();
                     layer = within(0.5);
                 }
                 shown.particles.extend(layer);
@@ -198,14 +199,25 @@ fn select(case: &Case, reference: &[Vec3], sight: Sight, middle: &Vec3, spacing:
             (_, false) => {
                 shown.particles.extend(range.clone());
                 if let Cells::Quads(cells) = &body.cells {
-                    let moved = cells.iter().map(|cell| cell.map(|a| place + a as usize));
-                    shown.cells.extend(moved);
+                    let cells: Vec<[usize; 4]> =
+                        cells.iter().map(|cell| cell.map(|a| a as usize)).collect();
+                    if is_covered(range.len(), &cells) {
+                        let moved = cells.iter().map(|cell| cell.map(|a| place + a));
+                        shown.cells.extend(moved);
+                    }
                 }
             }
         }
         first = range.end;
     }
     shown
+}
+
+/// Whether every particle is the corner of a cell. Round bodies on a lattice have others, and their
+/// full cells alone would show another shape: they are drawn as dots.
+fn is_covered(particles: usize, cells: &[[usize; 4]]) -> bool {
+    let corners: std::collections::HashSet<usize> = cells.iter().flatten().copied().collect();
+    corners.len() == particles
 }
 
 /// Quadrilaterals between the particles of a layer that stand on the crossings of two sets of
@@ -292,6 +304,14 @@ mod tests {
         );
         // Five points across, four layers; every gap between four of them is a cell.
         assert_eq!((shown.particles.len(), shown.cells.len()), (20, 12));
+        // The lattice points on the rim are in no full cell of a cut across.
+        let across = Sight {
+            plane: Some([0, 1, 2]),
+            is_cut: true,
+        };
+        let middle = Vec3::new(0.0, 0.0, 1.5e-3);
+        let shown = select(&upright, positions, across, &middle, 1e-3);
+        assert_eq!((shown.particles.len(), shown.cells.len()), (13, 0));
         let across = case(
             "{ cylinder = { base = [0, 0, 0], axis = \"y\", radius = 0.002, height = 0.003 } }",
         );
