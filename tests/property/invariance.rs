@@ -5,9 +5,7 @@ use jstsph_geometry::{Dimension, face_areas};
 use jstsph_material::MaterialSpec;
 use jstsph_material::hardening::{Hardening, Linear};
 use jstsph_material::models::HenckyVonMises;
-use jstsph_solver::{
-    Condition, ConditionKind, Integrator, Model, ModelObstacle, Scheme, Signal, Simulation,
-};
+use jstsph_solver::{Condition, ConditionKind, Model, ModelObstacle, Scheme, Signal, Simulation};
 use jstsph_tensor::{Mat3, Vec3};
 use jstsph_tests::setup;
 
