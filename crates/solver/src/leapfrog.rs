@@ -1,7 +1,10 @@
 //! Staggered leapfrog: momentum at half steps, everything else at whole steps.
 
-use crate::SolverError;
-use crate::simulation::Simulation;
+use jstsph_tensor::Vec3;
+
+use crate::simulation::{Simulation, work_of};
+use crate::state::{Impulse, Ledger, State, Work};
+use crate::{SolverError, parallel, strain};
 
 /// Which part of a step a kick spans, which decides how its work is booked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,4 +55,100 @@ pub(crate) fn step(simulation: &mut Simulation, end: f64) -> Result<(), SolverEr
         simulation.dt = next;
     }
     Ok(())
+}
+
+impl Simulation {
+    pub(crate) fn move_particles(&mut self, dt: f64) {
+        let Self {
+            reference, state, ..
+        } = self;
+        let State {
+            position, momentum, ..
+        } = state;
+        parallel::for_each(position, |a, x| {
+            *x += momentum[a] * (dt / reference.density[a])
+        });
+    }
+
+    pub(crate) fn drift_strains(&mut self, dt: f64) {
+        self.book_jacobian_dissipation(dt);
+        strain::drift(
+            self.strains(),
+            &self.reference,
+            &mut self.state,
+            &mut self.work,
+            dt,
+        );
+    }
+
+    pub(crate) fn advance_time(&mut self, dt: f64, end: f64) {
+        self.move_obstacles(self.time, dt);
+        self.advance_clock(dt, end);
+    }
+
+    /// p += Δt R over `duration`, then the constraints for the travel over `travel` that follows,
+    /// and the books of the kick.
+    pub(crate) fn kick(&mut self, kick: Kick, duration: f64, travel: f64) {
+        let Self {
+            state,
+            work,
+            ledger,
+            ..
+        } = self;
+        parallel::for_each_triple(
+            &mut state.momentum,
+            &mut ledger.momentum_before,
+            &mut ledger.impulse,
+            |a, p, before, impulse| {
+                *before = *p;
+                *impulse = Impulse {
+                    numerical: work.dissipation[a] * duration,
+                    external: work.external_force[a] * duration,
+                    contact: Vec3::zeros(),
+                };
+                *p += impulse.numerical + impulse.external - work.internal_force[a] * duration;
+            },
+        );
+        let time = self.time;
+        let Self {
+            reference,
+            state,
+            ledger,
+            ..
+        } = self;
+        self.prescribed.apply(
+            reference,
+            time + 0.5 * travel,
+            1.0,
+            &mut state.momentum,
+            ledger,
+        );
+        self.obstacles
+            .apply(reference, time, travel, 1.0, state, ledger);
+
+        let Ledger {
+            momentum_before,
+            impulse,
+            work: total,
+            last_work,
+            ..
+        } = ledger;
+        let momentum = &state.momentum;
+        parallel::for_each_pair(total, last_work, |a, total, last| {
+            let mean = (momentum_before[a] + momentum[a]) * (0.5 / reference.density[a]);
+            let done = work_of(&impulse[a], &mean);
+            match kick {
+                // Half of twice the work is booked with the next kick: all of it by then.
+                Kick::Opening => *last = done.plus(done, 1.0),
+                Kick::Full => {
+                    *total = total.plus(*last, 0.5).plus(done, 0.5);
+                    *last = done;
+                }
+                Kick::Closing => {
+                    *total = total.plus(*last, 0.5).plus(done, 1.0);
+                    *last = Work::default();
+                }
+            }
+        });
+    }
 }

@@ -5,6 +5,7 @@
 //! points (the particles themselves, or the midpoints of lattice bonds) carry F, H, the plastic
 //! history and the stress. The solver reads and writes no files and knows no units but SI.
 
+mod consistency;
 mod constraint;
 mod dissipation;
 mod energy;

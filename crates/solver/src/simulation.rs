@@ -3,17 +3,16 @@
 use jstsph_material::MaterialBlock;
 use jstsph_tensor::Vec3;
 
-use crate::constraint::{MAX_OBSTACLES, Obstacles, Prescribed};
+use crate::constraint::{Obstacles, Prescribed};
 use crate::error::Place;
 use crate::force::Loads;
-use crate::leapfrog::Kick;
-use crate::model::{ConditionKind, Formulation, Integrator, Model, Scheme};
+use crate::model::{Integrator, Model, Scheme};
 use crate::reference::Reference;
 use crate::state::{Impulse, Ledger, State, Work, Workspace};
-use crate::strain::{Strains, constrain};
+use crate::strain::Strains;
 use crate::time_step::{StableStep, stable_step};
 use crate::{
-    SolverError, dissipation, force, leapfrog, parallel, projection, strain, stress,
+    SolverError, consistency, dissipation, force, leapfrog, parallel, projection, strain, stress,
     tvd_runge_kutta,
 };
 
@@ -33,7 +32,7 @@ pub struct Simulation {
     pub(crate) obstacles: Obstacles,
     loads: Loads,
     /// State at the beginning of a Runge-Kutta step; empty for the leapfrog.
-    start: Option<Box<State>>,
+    pub(crate) start: Option<Box<State>>,
     /// Equivalent plastic strain of the points, kept when a dissipation depends on it.
     plastic_strain: Vec<f64>,
     pub(crate) time: f64,
@@ -52,7 +51,7 @@ impl Simulation {
     /// # Errors
     /// [`SolverError`] when the model is inconsistent or a body cannot be discretised.
     pub fn new(model: Model) -> Result<Self, SolverError> {
-        check(&model)?;
+        consistency::check(&model)?;
         let reference = Reference::new(&model)?;
         let momentum = model
             .bodies
@@ -318,104 +317,8 @@ impl Simulation {
         self.time = if rest <= dt { end } else { self.time + dt };
     }
 
-    // Pieces of the leapfrog.
-
-    pub(crate) fn move_particles(&mut self, dt: f64) {
-        let Self {
-            reference, state, ..
-        } = self;
-        let State {
-            position, momentum, ..
-        } = state;
-        parallel::for_each(position, |a, x| {
-            *x += momentum[a] * (dt / reference.density[a])
-        });
-    }
-
-    pub(crate) fn drift_strains(&mut self, dt: f64) {
-        self.book_jacobian_dissipation(dt);
-        strain::drift(
-            self.strains(),
-            &self.reference,
-            &mut self.state,
-            &mut self.work,
-            dt,
-        );
-    }
-
-    pub(crate) fn advance_time(&mut self, dt: f64, end: f64) {
-        self.move_obstacles(self.time, dt);
-        self.advance_clock(dt, end);
-    }
-
-    /// p += Δt R over `duration`, then the constraints for the travel over `travel` that follows,
-    /// and the books of the kick.
-    pub(crate) fn kick(&mut self, kick: Kick, duration: f64, travel: f64) {
-        let Self {
-            state,
-            work,
-            ledger,
-            ..
-        } = self;
-        parallel::for_each_triple(
-            &mut state.momentum,
-            &mut ledger.momentum_before,
-            &mut ledger.impulse,
-            |a, p, before, impulse| {
-                *before = *p;
-                *impulse = Impulse {
-                    numerical: work.dissipation[a] * duration,
-                    external: work.external_force[a] * duration,
-                    contact: Vec3::zeros(),
-                };
-                *p += impulse.numerical + impulse.external - work.internal_force[a] * duration;
-            },
-        );
-        let time = self.time;
-        let Self {
-            reference,
-            state,
-            ledger,
-            ..
-        } = self;
-        self.prescribed.apply(
-            reference,
-            time + 0.5 * travel,
-            1.0,
-            &mut state.momentum,
-            ledger,
-        );
-        self.obstacles
-            .apply(reference, time, travel, 1.0, state, ledger);
-
-        let Ledger {
-            momentum_before,
-            impulse,
-            work: total,
-            last_work,
-            ..
-        } = ledger;
-        let momentum = &state.momentum;
-        parallel::for_each_pair(total, last_work, |a, total, last| {
-            let mean = (momentum_before[a] + momentum[a]) * (0.5 / reference.density[a]);
-            let done = work_of(&impulse[a], &mean);
-            match kick {
-                // Half of twice the work is booked with the next kick: all of it by then.
-                Kick::Opening => *last = done.plus(done, 1.0),
-                Kick::Full => {
-                    *total = total.plus(*last, 0.5).plus(done, 0.5);
-                    *last = done;
-                }
-                Kick::Closing => {
-                    *total = total.plus(*last, 0.5).plus(done, 1.0);
-                    *last = Work::default();
-                }
-            }
-        });
-    }
-
     /// Work that D(J) does on the volumetric energy over `dt`.
-    fn book_jacobian_dissipation(&mut self, dt: f64) {
+    pub(crate) fn book_jacobian_dissipation(&mut self, dt: f64) {
         if !self
             .scheme
             .stabilisation
@@ -433,112 +336,6 @@ impl Simulation {
         parallel::for_each(&mut ledger.work, |a, total| {
             total.numerical +=
                 dt * work.volumetric_stress[a] / state.jacobian[a] * work.jacobian_dissipation[a];
-        });
-    }
-
-    // Pieces of TVD-RK2.
-
-    pub(crate) fn open_books(&mut self) {
-        self.ledger.impulse.fill(Impulse::default());
-    }
-
-    pub(crate) fn save_start(&mut self) {
-        if let Some(start) = &mut self.start {
-            start.copy_from(&self.state);
-        }
-    }
-
-    /// u += Δt R(u), with the rates evaluated last (3.16a, b).
-    pub(crate) fn stage(&mut self, dt: f64) {
-        self.book_jacobian_dissipation(0.5 * dt);
-        let strains = self.strains();
-        let Self {
-            reference,
-            state,
-            work,
-            ledger,
-            ..
-        } = self;
-        strain::euler(strains, reference, state, work, dt);
-        let State {
-            position, momentum, ..
-        } = state;
-        parallel::for_each_triple(
-            position,
-            momentum,
-            &mut ledger.impulse,
-            |a, x, p, impulse| {
-                *x += *p * (dt / reference.density[a]);
-                impulse.numerical += work.dissipation[a] * (0.5 * dt);
-                impulse.external += work.external_force[a] * (0.5 * dt);
-                *p += (work.dissipation[a] + work.external_force[a] - work.internal_force[a]) * dt;
-            },
-        );
-    }
-
-    /// Forces of stage 2, with the lever arms xⁿ⁺¹ = ½ (xⁿ + x* + Δt p*/ρ).
-    pub(crate) fn stage_two_forces(&mut self, dt: f64) {
-        let start = self.start.take();
-        let density = std::mem::take(&mut self.reference.density);
-        let time = self.time;
-        self.time += dt;
-        if let Some(start) = &start {
-            self.forces(|state, a| {
-                (start.position[a] + state.position[a] + state.momentum[a] * (dt / density[a]))
-                    * 0.5
-            });
-        }
-        self.time = time;
-        self.reference.density = density;
-        self.start = start;
-    }
-
-    /// uⁿ⁺¹ = (uⁿ + u**)/2 (3.16c), then the strains that are not integrated.
-    pub(crate) fn average_with_start(&mut self) {
-        let strains = self.strains();
-        let Self {
-            reference,
-            state,
-            start,
-            ..
-        } = self;
-        let Some(start) = start else { return };
-        parallel::for_each_triple(
-            &mut state.position,
-            &mut state.momentum,
-            &mut state.jacobian,
-            |a, x, p, j| {
-                *x = (start.position[a] + *x) * 0.5;
-                *p = (start.momentum[a] + *p) * 0.5;
-                *j = (start.jacobian[a] + *j) * 0.5;
-            },
-        );
-        parallel::for_each_pair(
-            &mut state.deformation_gradient,
-            &mut state.cofactor,
-            |q, f, h| {
-                *f = (start.deformation_gradient[q] + *f) * 0.5;
-                *h = (start.cofactor[q] + *h) * 0.5;
-            },
-        );
-        constrain(strains, reference, state);
-    }
-
-    /// Work of the impulses of a Runge-Kutta step, with the mean velocity of the step: their sum
-    /// is the change of kinetic energy exactly.
-    pub(crate) fn close_books(&mut self) {
-        let Self {
-            reference,
-            state,
-            start,
-            ledger,
-            ..
-        } = self;
-        let Some(start) = start else { return };
-        let impulse = &ledger.impulse;
-        parallel::for_each(&mut ledger.work, |a, total| {
-            let mean = (start.momentum[a] + state.momentum[a]) * (0.5 / reference.density[a]);
-            *total = total.plus(work_of(&impulse[a], &mean), 1.0);
         });
     }
 
@@ -601,88 +398,10 @@ impl Simulation {
 }
 
 /// Work of an impulse at a velocity.
-fn work_of(impulse: &Impulse, velocity: &Vec3) -> Work {
+pub(crate) fn work_of(impulse: &Impulse, velocity: &Vec3) -> Work {
     Work {
         numerical: impulse.numerical.dot(velocity),
         external: impulse.external.dot(velocity),
         contact: impulse.contact.dot(velocity),
     }
-}
-
-/// What the types of a model cannot express.
-fn check(model: &Model) -> Result<(), SolverError> {
-    let inconsistent = |what: String| Err(SolverError::Inconsistent { what });
-    if model.bodies.is_empty() {
-        return inconsistent("a simulation needs at least one body".into());
-    }
-    if model.obstacles.len() > MAX_OBSTACLES {
-        return inconsistent(format!(
-            "{} obstacles exceed the limit of {MAX_OBSTACLES}",
-            model.obstacles.len()
-        ));
-    }
-    for body in &model.bodies {
-        body.material
-            .validate()
-            .map_err(|source| SolverError::Material {
-                body: body.name.clone(),
-                source,
-            })?;
-        if body.initial_velocity.len() != body.body.positions.len() {
-            return inconsistent(format!(
-                "body \"{}\" has {} particles but {} initial velocities",
-                body.name,
-                body.body.positions.len(),
-                body.initial_velocity.len()
-            ));
-        }
-    }
-    for condition in &model.conditions {
-        let Some(body) = model.bodies.get(condition.body) else {
-            return inconsistent(format!(
-                "condition \"{}\" refers to body {} of {}",
-                condition.name,
-                condition.body,
-                model.bodies.len()
-            ));
-        };
-        let particles = body.body.positions.len();
-        if let Some(particle) = condition
-            .particles
-            .iter()
-            .find(|a| **a as usize >= particles)
-        {
-            return inconsistent(format!(
-                "condition \"{}\" refers to particle {particle} of {particles}",
-                condition.name
-            ));
-        }
-        if let ConditionKind::Traction { areas, .. } = &condition.kind
-            && areas.len() != condition.particles.len()
-        {
-            return inconsistent(format!(
-                "condition \"{}\" has {} areas for {} particles",
-                condition.name,
-                areas.len(),
-                condition.particles.len()
-            ));
-        }
-    }
-    let scheme = &model.scheme;
-    for (name, value) in [
-        ("cfl", scheme.cfl),
-        ("smoothing ratio", scheme.smoothing_ratio),
-    ] {
-        if !(value.is_finite() && value > 0.0) {
-            return inconsistent(format!("{name} is {value}, it must be positive"));
-        }
-    }
-    if scheme.formulation == Formulation::MomentumGradient
-        && scheme.stabilisation.jst.is_some_and(|jst| jst.on_jacobian)
-    {
-        return inconsistent(
-            "JST dissipation of J needs J as an unknown: formulation \"pFHJ\" or \"pFJ\"".into(),
-        );
-    }
-    Ok(())
 }

@@ -1,7 +1,9 @@
 //! Two-stage TVD Runge-Kutta (3.16), the paper's integrator.
 
-use crate::SolverError;
-use crate::simulation::Simulation;
+use crate::simulation::{Simulation, work_of};
+use crate::state::{Impulse, State};
+use crate::strain::constrain;
+use crate::{SolverError, parallel, strain};
 
 /// One step, to be read beside the paper's algorithm box:
 ///
@@ -40,4 +42,110 @@ pub(crate) fn step(simulation: &mut Simulation, end: f64) -> Result<(), SolverEr
     simulation.commit_history();
     simulation.close_books();
     Ok(())
+}
+
+impl Simulation {
+    pub(crate) fn open_books(&mut self) {
+        self.ledger.impulse.fill(Impulse::default());
+    }
+
+    pub(crate) fn save_start(&mut self) {
+        if let Some(start) = &mut self.start {
+            start.copy_from(&self.state);
+        }
+    }
+
+    /// u += Δt R(u), with the rates evaluated last (3.16a, b).
+    pub(crate) fn stage(&mut self, dt: f64) {
+        self.book_jacobian_dissipation(0.5 * dt);
+        let strains = self.strains();
+        let Self {
+            reference,
+            state,
+            work,
+            ledger,
+            ..
+        } = self;
+        strain::euler(strains, reference, state, work, dt);
+        let State {
+            position, momentum, ..
+        } = state;
+        parallel::for_each_triple(
+            position,
+            momentum,
+            &mut ledger.impulse,
+            |a, x, p, impulse| {
+                *x += *p * (dt / reference.density[a]);
+                impulse.numerical += work.dissipation[a] * (0.5 * dt);
+                impulse.external += work.external_force[a] * (0.5 * dt);
+                *p += (work.dissipation[a] + work.external_force[a] - work.internal_force[a]) * dt;
+            },
+        );
+    }
+
+    /// Forces of stage 2, with the lever arms xⁿ⁺¹ = ½ (xⁿ + x* + Δt p*/ρ).
+    pub(crate) fn stage_two_forces(&mut self, dt: f64) {
+        let start = self.start.take();
+        let density = std::mem::take(&mut self.reference.density);
+        let time = self.time;
+        self.time += dt;
+        if let Some(start) = &start {
+            self.forces(|state, a| {
+                (start.position[a] + state.position[a] + state.momentum[a] * (dt / density[a]))
+                    * 0.5
+            });
+        }
+        self.time = time;
+        self.reference.density = density;
+        self.start = start;
+    }
+
+    /// uⁿ⁺¹ = (uⁿ + u**)/2 (3.16c), then the strains that are not integrated.
+    pub(crate) fn average_with_start(&mut self) {
+        let strains = self.strains();
+        let Self {
+            reference,
+            state,
+            start,
+            ..
+        } = self;
+        let Some(start) = start else { return };
+        parallel::for_each_triple(
+            &mut state.position,
+            &mut state.momentum,
+            &mut state.jacobian,
+            |a, x, p, j| {
+                *x = (start.position[a] + *x) * 0.5;
+                *p = (start.momentum[a] + *p) * 0.5;
+                *j = (start.jacobian[a] + *j) * 0.5;
+            },
+        );
+        parallel::for_each_pair(
+            &mut state.deformation_gradient,
+            &mut state.cofactor,
+            |q, f, h| {
+                *f = (start.deformation_gradient[q] + *f) * 0.5;
+                *h = (start.cofactor[q] + *h) * 0.5;
+            },
+        );
+        constrain(strains, reference, state);
+    }
+
+    /// Work of the impulses of a Runge-Kutta step, with the mean velocity of the step: their sum
+    /// is the change of kinetic energy exactly.
+    pub(crate) fn close_books(&mut self) {
+        let Self {
+            reference,
+            state,
+            start,
+            ledger,
+            ..
+        } = self;
+        let Some(start) = start else { return };
+        let impulse = &ledger.impulse;
+        parallel::for_each(&mut ledger.work, |a, total| {
+            let mean = (start.momentum[a] + state.momentum[a]) * (0.5 / reference.density[a]);
+            *total = total.plus(work_of(&impulse[a], &mean), 1.0);
+        });
+    }
 }

@@ -1,0 +1,83 @@
+//! Checks of a model that its types cannot express.
+
+use crate::SolverError;
+use crate::constraint::MAX_OBSTACLES;
+use crate::model::{ConditionKind, Formulation, Model};
+
+/// Refuses a model whose parts do not fit together, or whose numbers are out of range.
+pub(crate) fn check(model: &Model) -> Result<(), SolverError> {
+    let inconsistent = |what: String| Err(SolverError::Inconsistent { what });
+    if model.bodies.is_empty() {
+        return inconsistent("a simulation needs at least one body".into());
+    }
+    if model.obstacles.len() > MAX_OBSTACLES {
+        return inconsistent(format!(
+            "{} obstacles exceed the limit of {MAX_OBSTACLES}",
+            model.obstacles.len()
+        ));
+    }
+    for body in &model.bodies {
+        body.material
+            .validate()
+            .map_err(|source| SolverError::Material {
+                body: body.name.clone(),
+                source,
+            })?;
+        if body.initial_velocity.len() != body.body.positions.len() {
+            return inconsistent(format!(
+                "body \"{}\" has {} particles but {} initial velocities",
+                body.name,
+                body.body.positions.len(),
+                body.initial_velocity.len()
+            ));
+        }
+    }
+    for condition in &model.conditions {
+        let Some(body) = model.bodies.get(condition.body) else {
+            return inconsistent(format!(
+                "condition \"{}\" refers to body {} of {}",
+                condition.name,
+                condition.body,
+                model.bodies.len()
+            ));
+        };
+        let particles = body.body.positions.len();
+        if let Some(particle) = condition
+            .particles
+            .iter()
+            .find(|a| **a as usize >= particles)
+        {
+            return inconsistent(format!(
+                "condition \"{}\" refers to particle {particle} of {particles}",
+                condition.name
+            ));
+        }
+        if let ConditionKind::Traction { areas, .. } = &condition.kind
+            && areas.len() != condition.particles.len()
+        {
+            return inconsistent(format!(
+                "condition \"{}\" has {} areas for {} particles",
+                condition.name,
+                areas.len(),
+                condition.particles.len()
+            ));
+        }
+    }
+    let scheme = &model.scheme;
+    for (name, value) in [
+        ("cfl", scheme.cfl),
+        ("smoothing ratio", scheme.smoothing_ratio),
+    ] {
+        if !(value.is_finite() && value > 0.0) {
+            return inconsistent(format!("{name} is {value}, it must be positive"));
+        }
+    }
+    if scheme.formulation == Formulation::MomentumGradient
+        && scheme.stabilisation.jst.is_some_and(|jst| jst.on_jacobian)
+    {
+        return inconsistent(
+            "JST dissipation of J needs J as an unknown: formulation \"pFHJ\" or \"pFJ\"".into(),
+        );
+    }
+    Ok(())
+}
