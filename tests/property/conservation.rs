@@ -81,7 +81,8 @@ fn free_yielding_body_keeps_its_momenta_and_its_compatibility() {
     }
 }
 
-/// The counterexample that shows what the projection is for: nodal stresses exert a torque.
+/// The counterexample that shows what the projection is for: upwind pair forces are not central and exert a
+/// torque (the bare nodal stresses do not, as long as F is the gradient of x: docs/theory.md).
 #[test]
 fn particles_without_projection_lose_angular_momentum() {
     let scheme = Scheme {

@@ -56,6 +56,12 @@ pub(crate) enum CliError {
         /// File asked for.
         path: PathBuf,
     },
+    /// A folder that no run has written.
+    #[error("{} is not a folder of results: it has no case.toml; give the folder of a run", path.display())]
+    NoResults {
+        /// Folder.
+        path: PathBuf,
+    },
     /// A results folder without frames.
     #[error("{} has no frames (frames/frames.pvd); give the folder of a run", path.display())]
     NoFrames {

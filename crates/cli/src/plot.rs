@@ -24,7 +24,12 @@ pub(crate) fn run(options: &PlotOptions, console: &mut Console<'_>) -> Result<u8
     if let Some(path) = &options.output {
         format(path)?;
     }
-    let case = jstsph_case::load(&options.results.join("case.toml"), &[])?;
+    let case = options.results.join("case.toml");
+    if !case.is_file() {
+        let path = options.results.clone();
+        return Err(CliError::NoResults { path });
+    }
+    let case = jstsph_case::load(&case, &[])?;
     let (figure, name) = match &options.history {
         Some(what) => {
             let path = options.results.join("history.csv");

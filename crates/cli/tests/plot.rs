@@ -188,7 +188,7 @@ fn mistakes_are_told_with_what_is_allowed_and_draw_nothing() {
             &["cannot be used with"],
         ),
         ("@/r --view zx", &["oblique"]),
-        ("@/nothing", &["error: cannot read case file", "case.toml"]),
+        ("@/nothing", &["is not a folder of results", "case.toml"]),
     ] {
         let plot = place.jstsph(&format!("jstsph plot {options}"));
         assert_eq!(plot.code, 2, "{options}: {}", plot.err);
