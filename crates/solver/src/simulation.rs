@@ -118,7 +118,8 @@ impl Simulation {
             &mut simulation.ledger,
         );
         simulation.evaluate_stress(0.0)?;
-        simulation.initial_energy = simulation.energies().kinetic + simulation.energies().elastic;
+        let energies = simulation.energies();
+        simulation.initial_energy = energies.kinetic + energies.elastic;
         Ok(simulation)
     }
 

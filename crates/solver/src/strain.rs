@@ -43,7 +43,6 @@ pub(crate) fn drift(
         jacobian_dissipation,
         ..
     } = work;
-    let integrated = strains.formulation == Formulation::MomentumGradientCofactorJacobian;
     let bonds = strains.quadrature == Quadrature::Bonds;
     parallel::for_each_triple(
         &mut state.deformation_gradient,
@@ -51,7 +50,7 @@ pub(crate) fn drift(
         volume_change,
         |q, f, h, change| {
             let g = &velocity_gradient[q];
-            let start = if integrated { *h } else { cofactor(f) };
+            let start = *h;
             let quarter = *f + g * (0.25 * dt);
             let half = *f + g * (0.5 * dt);
             let middle = start + tensor_cross(&quarter, g) * (0.5 * dt);
@@ -64,26 +63,25 @@ pub(crate) fn drift(
                 let simpson = start + middle * 4.0 + end;
                 dt / 6.0 * double_dot(&simpson, g)
             };
-            *h = if integrated { end } else { cofactor(f) };
+            *h = end;
         },
     );
     for body in &reference.bodies {
         let change = &volume_change[body.points.clone()];
         let dissipation = &jacobian_dissipation[body.particles.clone()];
-        let gradients = &state.deformation_gradient[body.points.clone()];
         parallel::for_each(
             &mut state.jacobian[body.particles.clone()],
             |a, jacobian| {
-                *jacobian = match (strains.formulation, bonds) {
-                    (Formulation::MomentumGradient, _) => {
-                        body.shares.mean(a, |q| gradients[q].determinant())
-                    }
-                    (_, true) => *jacobian * body.shares.mean(a, |q| change[q]).exp(),
-                    (_, false) => *jacobian + change[a],
-                } + dt * dissipation[a];
+                let grown = if bonds {
+                    *jacobian * body.shares.mean(a, |q| change[q]).exp()
+                } else {
+                    *jacobian + change[a]
+                };
+                *jacobian = grown + dt * dissipation[a];
             },
         );
     }
+    constrain(strains, reference, state);
 }
 
 /// Advances F, H and J by `dt` with their rates at the present state: one stage of TVD-RK2.

@@ -4,7 +4,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use jstsph_material::{
-    Block, BlockReader, BlockVisitor, Kinematics, Material, MaterialBlock, MaterialError,
+    Block, BlockReader, BlockVisitor, History, Kinematics, Material, MaterialBlock, MaterialError,
 };
 use jstsph_tensor::{Mat3, double_dot};
 
@@ -259,28 +259,15 @@ pub(crate) fn elastic_energy(
         .sum()
 }
 
-/// Reads one number per point from the committed history.
-struct ReadHistory<'a, F> {
-    read: &'a F,
+/// Reads the equivalent plastic strain of every point from the committed history.
+struct PlasticStrain<'a> {
     out: &'a mut [f64],
 }
 
-impl<F: Fn(&dyn HistoryView) -> f64 + Sync> BlockReader for ReadHistory<'_, F> {
+impl BlockReader for PlasticStrain<'_> {
     type Output = ();
     fn visit<M: Material>(&mut self, block: &Block<M>) {
-        let read = self.read;
-        parallel::fill(self.out, |q| read(&block.committed[q]));
-    }
-}
-
-/// The part of a history that every model has, without its type.
-pub(crate) trait HistoryView {
-    fn equivalent_plastic_strain(&self) -> f64;
-}
-
-impl<H: jstsph_material::History> HistoryView for H {
-    fn equivalent_plastic_strain(&self) -> f64 {
-        jstsph_material::History::equivalent_plastic_strain(self)
+        parallel::fill(self.out, |q| block.committed[q].equivalent_plastic_strain());
     }
 }
 
@@ -291,10 +278,8 @@ pub(crate) fn equivalent_plastic_strain(
     out: &mut [f64],
 ) {
     for (body, material) in reference.bodies.iter().zip(materials) {
-        material.visit_ref(&mut ReadHistory {
-            read: &|history: &dyn HistoryView| history.equivalent_plastic_strain(),
-            out: &mut out[body.points.clone()],
-        });
+        let out = &mut out[body.points.clone()];
+        material.visit_ref(&mut PlasticStrain { out });
     }
 }
 
