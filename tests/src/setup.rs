@@ -107,6 +107,7 @@ pub fn free_body(
         dimension: body.dimension,
         bodies: vec![ModelBody {
             name: "body".into(),
+            initial_temperature: vec![jstsph_material::ROOM_TEMPERATURE; body.positions.len()],
             initial_velocity: body.positions.iter().map(velocity).collect(),
             body,
             material,

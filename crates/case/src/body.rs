@@ -1,6 +1,7 @@
 //! `[[body]]`: shape, lattice, material, initial velocity.
 
 use jstsph_geometry::{Axis, Body, Dimension, Lattice, Shape, Spacing, build_body};
+use jstsph_material::ROOM_TEMPERATURE;
 use jstsph_solver::{ModelBody, Quadrature};
 use jstsph_tensor::Vec3;
 
@@ -9,7 +10,7 @@ use crate::error::{Origin, Problem};
 use crate::material::Materials;
 use crate::schema;
 use crate::section::{Field, Section};
-use crate::signal::{Scope, VARIABLES, signals};
+use crate::signal::{Scope, VARIABLES, signal, signals};
 use crate::units::Measure;
 use crate::value::{components, count, to_integer, vector};
 
@@ -54,6 +55,7 @@ pub(crate) fn read_body(
     let material = context.materials.find(&material_field)?;
     section.record("material", material_field.text()?);
     let initial_velocity = read_velocity(section, &body)?;
+    let initial_temperature = read_temperature(section, &body)?;
     let body_force = match section.field("body_force")? {
         None => None,
         Some(field) => {
@@ -84,6 +86,7 @@ pub(crate) fn read_body(
         body,
         material,
         initial_velocity,
+        initial_temperature,
         body_force,
     };
     Ok((model, place, table.finish()))
@@ -252,6 +255,34 @@ fn read_velocity(section: &mut Section<'_>, body: &Body) -> Result<Vec<Vec3>, Pr
     section.record("velocity", resolved);
     let at = |x: &Vec3| Vec3::from_fn(|axis, _| velocity[axis].at(0.0, x));
     Ok(body.positions.iter().map(at).collect())
+}
+
+/// Temperature of every particle at time zero; it must be above absolute zero.
+fn read_temperature(section: &mut Section<'_>, body: &Body) -> Result<Vec<f64>, Problem> {
+    let Some(field) = section.field("temperature")? else {
+        section.record("temperature", ROOM_TEMPERATURE);
+        return Ok(vec![ROOM_TEMPERATURE; body.positions.len()]);
+    };
+    let scope = Scope {
+        variables: &VARIABLES[1..],
+        positions: &body.positions,
+    };
+    let (temperature, resolved) = signal(&field.node, &field.path, Measure::TEMPERATURE, scope)?;
+    section.record("temperature", resolved);
+    let found: Vec<f64> = body
+        .positions
+        .iter()
+        .map(|x| temperature.at(0.0, x))
+        .collect();
+    match found.iter().find(|t| **t <= 0.0) {
+        None => Ok(found),
+        Some(cold) => Err(field
+            .problem(format!(
+                "`{}` must be greater than 0 K, but is {cold} K",
+                field.path
+            ))
+            .help("a number without unit is in kelvin; write \"20 degC\" for degrees Celsius")),
+    }
 }
 
 fn rotation_axis(rotation: &mut Section<'_>, dimension: Dimension) -> Result<Vec3, Problem> {

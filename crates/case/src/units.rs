@@ -34,13 +34,23 @@ impl Measure {
     pub const STRESS: Self = Self::of(-1, 1, -2);
     /// Kilogram per cubic metre.
     pub const DENSITY: Self = Self::of(-3, 1, 0);
+    /// Kelvin.
+    pub const TEMPERATURE: Self = Self::thermal(0, 0, 0, 1);
+    /// Watt per square metre.
+    pub const HEAT_FLUX: Self = Self::of(0, 1, -3);
+    /// Watt per square metre and kelvin.
+    pub const HEAT_TRANSFER: Self = Self::thermal(0, 1, -3, -1);
 
     const fn of(length: i8, mass: i8, time: i8) -> Self {
+        Self::thermal(length, mass, time, 0)
+    }
+
+    const fn thermal(length: i8, mass: i8, time: i8, temperature: i8) -> Self {
         Self {
             length,
             mass,
             time,
-            temperature: 0,
+            temperature,
         }
     }
 
@@ -73,15 +83,12 @@ const NAMED: &[(Measure, &str, &str)] = &[
     (Measure::RATE, "a rate", "1/s, rad/s"),
     (Measure::STRESS, "a stress", "Pa, kPa, MPa, GPa"),
     (Measure::DENSITY, "a density", "kg/m^3, g/cm^3"),
+    (Measure::TEMPERATURE, "a temperature", "K, degC"),
+    (Measure::HEAT_FLUX, "a heat flux", "W/m^2, kW/m^2"),
     (
-        Measure {
-            length: 0,
-            mass: 0,
-            time: 0,
-            temperature: 1,
-        },
-        "a temperature",
-        "K",
+        Measure::HEAT_TRANSFER,
+        "a heat transfer coefficient",
+        "W/m^2/K",
     ),
 ];
 
@@ -147,17 +154,7 @@ pub const UNITS: &[Unit] = &[
     unit("m", 1.0, Measure::LENGTH, true),
     unit("g", 1e-3, Measure::of(0, 1, 0), true),
     unit("s", 1.0, Measure::TIME, true),
-    unit(
-        "K",
-        1.0,
-        Measure {
-            length: 0,
-            mass: 0,
-            time: 0,
-            temperature: 1,
-        },
-        false,
-    ),
+    unit("K", 1.0, Measure::TEMPERATURE, false),
     unit("N", 1.0, Measure::of(1, 1, -2), true),
     unit("Pa", 1.0, Measure::STRESS, true),
     unit("bar", 1e5, Measure::STRESS, true),
@@ -170,6 +167,12 @@ pub const UNITS: &[Unit] = &[
     unit("%", 1e-2, Measure::NUMBER, false),
     unit("1", 1.0, Measure::NUMBER, false),
 ];
+
+/// The one unit with an offset, by its spellings.
+const CELSIUS: [&str; 2] = ["degC", "°C"];
+
+/// 0 °C in K.
+const ZERO_CELSIUS: f64 = 273.15;
 
 /// Decimal prefixes and their factors.
 pub const PREFIXES: &[(&str, f64)] = &[
@@ -215,7 +218,8 @@ pub enum UnitError {
 /// Value in SI units and dimension of a text such as `"8 mm"`, `"-1 m/s"` or `"2.8 g/cm^3"`.
 ///
 /// A unit is a product of symbols with optional integer powers (`^2`, `²`), separated by spaces,
-/// `*` or `·`; what follows a `/` is divided by, one symbol per stroke (`J/kg/K`).
+/// `*` or `·`; what follows a `/` is divided by, one symbol per stroke (`J/kg/K`). `degC` (or `°C`)
+/// is a temperature above that of melting ice and stands alone: differences are in `K`.
 ///
 /// ```
 /// use jstsph_case::units::{Measure, parse_quantity};
@@ -238,6 +242,12 @@ pub fn parse_quantity(text: &str) -> Result<(f64, Measure), UnitError> {
             text: text.to_owned(),
             number: trimmed.to_owned(),
         });
+    }
+    if CELSIUS.contains(&unit) {
+        let value: f64 = number.parse().map_err(|_| UnitError::NoNumber {
+            text: text.to_owned(),
+        })?;
+        return Ok((value + ZERO_CELSIUS, Measure::TEMPERATURE));
     }
     let (factor, measure) = parse_unit(unit).map_err(|symbol| UnitError::UnknownUnit {
         symbol,
@@ -347,6 +357,9 @@ mod tests {
             ("9.81 m/s^2", 9.81, Measure::ACCELERATION),
             ("9.81 m/s²", 9.81, Measure::ACCELERATION),
             ("105 rad/s", 105.0, Measure::RATE),
+            ("400 degC", 673.15, Measure::TEMPERATURE),
+            ("-20.5 °C", 252.64999999999998, Measure::TEMPERATURE),
+            ("300 K", 300.0, Measure::TEMPERATURE),
             ("180 deg", std::f64::consts::PI, Measure::NUMBER),
             ("3 1/s", 3.0, Measure::RATE),
             ("2 N/mm^2", 2e6, Measure::STRESS),

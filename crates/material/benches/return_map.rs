@@ -31,6 +31,7 @@ fn points(model: &HenckyVonMises, plane: bool, size: f64) -> Vec<(Kinematics, Pl
                 deformation_gradient: f,
                 jacobian: f.determinant(),
                 dt: 1e-7,
+                temperature: jstsph_material::ROOM_TEMPERATURE,
             };
             let flowed = model
                 .respond(&kinematics(f(0.0)), &model.initial_history())

@@ -68,6 +68,7 @@ mod tests {
                 deformation_gradient: Mat3::new(1.0, 0.02, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0),
                 jacobian: 1.0,
                 dt: 1e-6,
+                temperature: crate::ROOM_TEMPERATURE,
             };
             for (old, new) in block.committed.iter().zip(&mut block.candidate) {
                 *new = block.model.respond(&now, old).unwrap().history;

@@ -52,6 +52,7 @@ fn consistent(f: &Mat3) -> Kinematics {
         deformation_gradient: *f,
         jacobian: f.determinant(),
         dt: 1e-6,
+        temperature: crate::ROOM_TEMPERATURE,
     }
 }
 
@@ -65,13 +66,14 @@ fn respond<M: Material>(model: &M, f: &Mat3, old: &M::History) -> Response<M::Hi
 /// P = (τ + τ_vol 1) F⁻ᵀ at a consistent F.
 fn first_piola_stress<M: Material>(model: &M, f: &Mat3, old: &M::History) -> Mat3 {
     let kirchhoff_stress = respond(model, f, old).kirchhoff_stress
-        + Mat3::identity() * model.volumetric_stress(f.determinant());
+        + Mat3::identity() * model.volumetric_stress(f.determinant(), crate::ROOM_TEMPERATURE);
     kirchhoff_stress * inverse_transpose(f).0
 }
 
 /// Ψ + U at a consistent F.
 fn stored_energy<M: Material>(model: &M, f: &Mat3, history: &M::History) -> f64 {
-    model.point_energy(&consistent(f), history) + model.volumetric_energy(f.determinant())
+    model.point_energy(&consistent(f), history)
+        + model.volumetric_energy(f.determinant(), crate::ROOM_TEMPERATURE)
 }
 
 /// A size of |F − 1| below which the model does not yield: a fifth of the yield strain, or rubber-like.

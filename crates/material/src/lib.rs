@@ -24,7 +24,7 @@
 //!
 //! // Simple shear by two per cent: far beyond yield.
 //! let f = Mat3::new(1.0, 0.02, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
-//! let now = Kinematics { deformation_gradient: f, jacobian: 1.0, dt: 1e-6 };
+//! let now = Kinematics { deformation_gradient: f, jacobian: 1.0, dt: 1e-6, temperature: 293.15 };
 //! let response = copper.respond(&now, &copper.initial_history())?;
 //! let flow_stress = 0.4e9 + 0.1e9 * response.plastic_increment;
 //! assert!((von_mises(&response.kirchhoff_stress) / flow_stress - 1.0).abs() < 1e-12);
@@ -50,6 +50,7 @@ mod logarithmic_strain;
 mod material;
 mod parameter;
 mod return_map;
+mod thermal;
 
 pub mod hardening;
 pub mod models;
@@ -61,6 +62,7 @@ pub use block::{Block, BlockReader, BlockVisitor};
 pub use error::{MaterialError, ParameterError};
 pub use history::{History, PlasticHistory};
 pub use library::{NamedMaterial, library};
-pub use material::{Kinematics, Material, Response, WaveSpeeds};
+pub use material::{Kinematics, Material, ROOM_TEMPERATURE, Response, WaveSpeeds};
 pub use models::{MODELS, MaterialBlock, MaterialSpec, NAMES, SUMMARIES};
 pub use parameter::{Description, Key, Range};
+pub use thermal::{Property, Thermal};

@@ -1,6 +1,6 @@
 //! The contract between a constitutive model and whoever evaluates it.
 
-use crate::{History, Key, MaterialError, ParameterError};
+use crate::{History, Key, MaterialError, ParameterError, Thermal};
 use jstsph_tensor::Mat3;
 use std::fmt::Debug;
 
@@ -13,7 +13,12 @@ pub struct Kinematics {
     pub jacobian: f64,
     /// Time since the committed history, s.
     pub dt: f64,
+    /// T, K. Models without a thermal part do not read it.
+    pub temperature: f64,
 }
+
+/// Temperature of a body whose temperature nobody gives, K: 20 °C.
+pub const ROOM_TEMPERATURE: f64 = 293.15;
 
 /// What a point answers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,15 +121,38 @@ pub trait Material: Clone + Debug + Send + Sync + 'static {
         old: &Self::History,
     ) -> Result<Response<Self::History>, MaterialError>;
 
-    /// τ_vol = J U'(J), Pa: the Kirchhoff stress to add as τ_vol 1. The caller makes sure that J > 0.
-    fn volumetric_stress(&self, jacobian: f64) -> f64;
+    /// τ_vol(J, T), Pa: the Kirchhoff stress to add as τ_vol 1; J U'(J) for a model that does not
+    /// read the temperature. The caller makes sure that J > 0.
+    fn volumetric_stress(&self, jacobian: f64, temperature: f64) -> f64;
 
-    /// U(J), J/m³ of reference volume. The caller makes sure that J > 0.
-    fn volumetric_energy(&self, jacobian: f64) -> f64;
+    /// The internal energy of the volumetric part less its heat ∫ ρ c dT, J/m³ of reference volume;
+    /// U(J) for a model that does not read the temperature. The caller makes sure that J > 0.
+    ///
+    /// With the free energy A(J, T) it is A − T ∂A/∂T without the heat, so that
+    /// J ∂/∂J of it = τ_vol − T ∂τ_vol/∂T ([`thermoelastic_stress`](Self::thermoelastic_stress)).
+    fn volumetric_energy(&self, jacobian: f64, temperature: f64) -> f64;
+
+    /// T ∂τ_vol/∂T, Pa: the part of τ_vol whose power τ J̇/J goes into (or comes from) heat.
+    /// Zero for a model without thermal expansion.
+    fn thermoelastic_stress(&self, _jacobian: f64, _temperature: f64) -> f64 {
+        0.0
+    }
 
     /// Ψ, the stored energy of the point's part, J/m³ of reference volume, for the history that the
     /// response at `now` returned.
     fn point_energy(&self, now: &Kinematics, history: &Self::History) -> f64;
+
+    /// Thermal properties; `None` for a model that has none, whose bodies keep their temperature.
+    fn thermal(&self) -> Option<&Thermal> {
+        None
+    }
+
+    /// Whether a point with this history can still carry tension; a failed one carries pressure in
+    /// compression only.
+    #[inline]
+    fn carries_tension(&self, _history: &Self::History) -> bool {
+        true
+    }
 
     /// Cauchy stress σ_Y at which the point yields, Pa; `None` for a model that never does.
     fn flow_stress(&self, _history: &Self::History) -> Option<f64> {

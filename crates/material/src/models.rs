@@ -1,6 +1,8 @@
 //! The registered models: one file each, one line each.
 
-use crate::{Block, BlockReader, BlockVisitor, Description, Material, ParameterError, WaveSpeeds};
+use crate::{
+    Block, BlockReader, BlockVisitor, Description, Material, ParameterError, Thermal, WaveSpeeds,
+};
 
 /// Makes the module, the case-file variant, the block variant and the conformance tests of each model.
 macro_rules! register_materials {
@@ -75,6 +77,12 @@ macro_rules! register_materials {
             #[must_use]
             pub fn wave_speeds(&self) -> WaveSpeeds {
                 match self { $(Self::$model(model) => model.wave_speeds()),+ }
+            }
+
+            /// Thermal properties, if the model has them.
+            #[must_use]
+            pub fn thermal(&self) -> Option<&Thermal> {
+                match self { $(Self::$model(model) => model.thermal()),+ }
             }
 
             /// `points` points of this material in their initial state.

@@ -64,6 +64,7 @@ fn model(
         dimension: body.dimension,
         bodies: vec![ModelBody {
             name: "body".into(),
+            initial_temperature: vec![jstsph_material::ROOM_TEMPERATURE; body.positions.len()],
             initial_velocity: vec![velocity; body.positions.len()],
             body,
             material,

@@ -31,6 +31,24 @@ pub(crate) fn check(model: &Model) -> Result<(), SolverError> {
                 body.initial_velocity.len()
             ));
         }
+        if body.initial_temperature.len() != body.body.positions.len() {
+            return inconsistent(format!(
+                "body \"{}\" has {} particles but {} initial temperatures",
+                body.name,
+                body.body.positions.len(),
+                body.initial_temperature.len()
+            ));
+        }
+        if let Some(t) = body
+            .initial_temperature
+            .iter()
+            .find(|t| !(**t > 0.0 && t.is_finite()))
+        {
+            return inconsistent(format!(
+                "body \"{}\" has an initial temperature of {t} K: it must be greater than 0 K",
+                body.name
+            ));
+        }
     }
     for condition in &model.conditions {
         let Some(body) = model.bodies.get(condition.body) else {

@@ -23,6 +23,7 @@
 //!     dimension: Dimension::PlaneStrain,
 //!     bodies: vec![ModelBody {
 //!         name: "plate".into(),
+//!         initial_temperature: vec![293.15; body.positions.len()],
 //!         initial_velocity: body.positions.iter().map(|x| Vec3::new(100.0 * x.x, 0.0, 0.0)).collect(),
 //!         body,
 //!         material: copper.spec.clone(),

@@ -36,6 +36,8 @@ pub struct ModelBody {
     pub material: MaterialSpec,
     /// Velocity of every particle at time zero, m/s.
     pub initial_velocity: Vec<Vec3>,
+    /// Temperature of every particle at time zero, K.
+    pub initial_temperature: Vec<f64>,
     /// Body force per unit mass, m/s², one signal per axis.
     pub body_force: Option<[Signal; 3]>,
 }

@@ -147,6 +147,7 @@ impl Simulation {
             ("position".to_owned(), flat_vectors(&state.position)),
             ("momentum".to_owned(), flat_vectors(&state.momentum)),
             ("jacobian".to_owned(), state.jacobian.clone()),
+            ("temperature".to_owned(), state.temperature.clone()),
             (
                 "deformation_gradient".to_owned(),
                 flat_tensors(&state.deformation_gradient),
@@ -231,6 +232,7 @@ impl Simulation {
         arrays.vectors("position", &mut state.position)?;
         arrays.vectors("momentum", &mut state.momentum)?;
         arrays.scalars("jacobian", &mut state.jacobian)?;
+        arrays.scalars("temperature", &mut state.temperature)?;
         arrays.tensors("deformation_gradient", &mut state.deformation_gradient)?;
         arrays.tensors("cofactor", &mut state.cofactor)?;
         arrays.tensors("scaled_stress", &mut work.scaled_stress)?;

@@ -63,7 +63,10 @@ impl Simulation {
                     .map(move |velocity| velocity * density)
             })
             .collect();
-        let state = State::undeformed(&reference, momentum);
+        let mut state = State::undeformed(&reference, momentum);
+        for (input, body) in model.bodies.iter().zip(&reference.bodies) {
+            state.temperature[body.particles.clone()].copy_from_slice(&input.initial_temperature);
+        }
         let materials: Vec<MaterialBlock> = model
             .bodies
             .iter()

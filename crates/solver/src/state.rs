@@ -1,6 +1,7 @@
 //! The unknowns, the buffers of a step, and the books kept beside them.
 
 use jstsph_contact::CachedGap;
+use jstsph_material::ROOM_TEMPERATURE;
 use jstsph_tensor::{Mat3, Vec3};
 
 use crate::reference::Reference;
@@ -15,6 +16,8 @@ pub struct State {
     pub momentum: Vec<Vec3>,
     /// Jacobian J of the particles.
     pub jacobian: Vec<f64>,
+    /// Temperature T of the particles, K.
+    pub temperature: Vec<f64>,
     /// Deformation gradient F of the points.
     pub deformation_gradient: Vec<Mat3>,
     /// Cofactor H of the points.
@@ -22,12 +25,13 @@ pub struct State {
 }
 
 impl State {
-    /// The undeformed state with the given momenta.
+    /// The undeformed state with the given momenta, at room temperature.
     pub(crate) fn undeformed(reference: &Reference, momentum: Vec<Vec3>) -> Self {
         let points = reference.point_volume.len();
         Self {
             position: reference.position.clone(),
             momentum,
+            temperature: vec![ROOM_TEMPERATURE; reference.position.len()],
             jacobian: vec![1.0; reference.position.len()],
             deformation_gradient: vec![Mat3::identity(); points],
             cofactor: vec![Mat3::identity(); points],
@@ -39,6 +43,7 @@ impl State {
         self.position.copy_from_slice(&other.position);
         self.momentum.copy_from_slice(&other.momentum);
         self.jacobian.copy_from_slice(&other.jacobian);
+        self.temperature.copy_from_slice(&other.temperature);
         self.deformation_gradient
             .copy_from_slice(&other.deformation_gradient);
         self.cofactor.copy_from_slice(&other.cofactor);

@@ -20,6 +20,7 @@ struct Points<'a> {
     strains: Strains,
     body: &'a BodyReference,
     jacobian: &'a [f64],
+    temperature: &'a [f64],
     deformation_gradient: &'a [Mat3],
     cofactor: &'a [Mat3],
     volume: &'a [f64],
@@ -60,7 +61,15 @@ impl Points<'_> {
             deformation_gradient: self.deformation_gradient[q],
             jacobian,
             dt: self.dt,
+            temperature: self.temperature(q),
         }
+    }
+
+    /// Temperature of a point: the mean of its ends.
+    #[inline]
+    fn temperature(&self, q: usize) -> f64 {
+        let [a, b] = self.body.ends[q];
+        0.5 * (self.temperature[a as usize] + self.temperature[b as usize])
     }
 }
 
@@ -103,7 +112,7 @@ impl BlockVisitor for Evaluation<'_> {
         let without_jacobian = points.without_jacobian();
         if !without_jacobian {
             parallel::fill(self.volumetric_stress, |a| {
-                model.volumetric_stress(points.jacobian[a])
+                model.volumetric_stress(points.jacobian[a], points.temperature[a])
             });
         }
         let volumetric_stress: &[f64] = self.volumetric_stress;
@@ -119,11 +128,14 @@ impl BlockVisitor for Evaluation<'_> {
                 match model.respond(&now, &committed[q]) {
                     Ok(response) => {
                         let [a, b] = points.body.ends[q];
-                        let pressure = if without_jacobian {
-                            model.volumetric_stress(now.jacobian)
+                        let mut pressure = if without_jacobian {
+                            model.volumetric_stress(now.jacobian, now.temperature)
                         } else {
                             0.5 * (volumetric_stress[a as usize] + volumetric_stress[b as usize])
                         };
+                        if pressure > 0.0 && !model.carries_tension(&response.history) {
+                            pressure = 0.0;
+                        }
                         let mut stress = response.kirchhoff_stress;
                         stress.m11 += pressure;
                         stress.m22 += pressure;
@@ -204,6 +216,7 @@ fn points_of<'a>(
         strains,
         body,
         jacobian: &state.jacobian[body.particles.clone()],
+        temperature: &state.temperature[body.particles.clone()],
         deformation_gradient: &state.deformation_gradient[body.points.clone()],
         cofactor: &state.cofactor[body.points.clone()],
         volume: &reference.point_volume[body.points.clone()],
@@ -225,7 +238,7 @@ impl BlockReader for ElasticEnergy<'_> {
             let now = points.kinematics(q);
             let mut energy = block.model.point_energy(&now, &block.committed[q]);
             if points.without_jacobian() {
-                energy += block.model.volumetric_energy(now.jacobian);
+                energy += block.model.volumetric_energy(now.jacobian, now.temperature);
             }
             points.volume[q] * energy
         });
@@ -234,7 +247,10 @@ impl BlockReader for ElasticEnergy<'_> {
         }
         at_points
             + parallel::sum(self.particle_volume.len(), 0.0, |a| {
-                self.particle_volume[a] * block.model.volumetric_energy(points.jacobian[a])
+                self.particle_volume[a]
+                    * block
+                        .model
+                        .volumetric_energy(points.jacobian[a], points.temperature[a])
             })
     }
 }

@@ -86,6 +86,7 @@ pub(crate) fn body(name: &str, nodes: [usize; 3], material: MaterialSpec) -> Mod
     let body = build_body(shape, lattice, dimension(nodes)).unwrap();
     ModelBody {
         name: name.into(),
+        initial_temperature: vec![jstsph_material::ROOM_TEMPERATURE; body.positions.len()],
         initial_velocity: vec![Vec3::zeros(); body.positions.len()],
         body,
         material,

@@ -32,6 +32,7 @@ fn model(quadrature: Quadrature, integrator: Integrator, formulation: Formulatio
         dimension: Dimension::PlaneStrain,
         bodies: vec![ModelBody {
             name: "plate".into(),
+            initial_temperature: vec![jstsph_material::ROOM_TEMPERATURE; body.positions.len()],
             initial_velocity: vec![Vec3::new(20.0, -150.0, 0.0); body.positions.len()],
             body,
             material: library()[0].spec.clone(),

@@ -1,6 +1,8 @@
 //! Keys of `[[body]]`, its shape, lattice and motion, and of selections and signals.
 
-use super::Kind::{Count, Flag, Number, OneOf, Other, Signals, Table, TableOr, Text, Vector};
+use super::Kind::{
+    Count, Flag, Number, OneOf, Other, Signal, Signals, Table, TableOr, Text, Vector,
+};
 use super::Presence::{Default, Derived, Optional, Required};
 use super::{AXIS, Key, LENGTH, Limit, PLACE, key};
 use crate::units::Measure;
@@ -34,6 +36,12 @@ pub const BODY: &[Key] = &[
         ),
         Optional,
         "initial velocity; zero unless given",
+    ),
+    key(
+        "temperature",
+        Signal(Measure::TEMPERATURE),
+        Default("\"20 degC\""),
+        "initial temperature: a number or an expression of X, Y, Z",
     ),
     key(
         "body_force",

@@ -12,8 +12,8 @@ pub(crate) fn undeformed_and_rotated_material_is_free_of_stress_and_history<M: M
 ) {
     let initial = model.initial_history();
     assert_eq!(model.validate(), Ok(()));
-    assert_eq!(model.volumetric_stress(1.0), 0.0);
-    assert_eq!(model.volumetric_energy(1.0), 0.0);
+    assert_eq!(model.volumetric_stress(1.0, crate::ROOM_TEMPERATURE), 0.0);
+    assert_eq!(model.volumetric_energy(1.0, crate::ROOM_TEMPERATURE), 0.0);
     assert_eq!(
         respond(model, &Mat3::identity(), &initial).kirchhoff_stress,
         Mat3::zeros()
@@ -58,10 +58,14 @@ pub(crate) fn volumetric_stress_is_the_derivative_of_the_volumetric_energy<M: Ma
     let scale = model.wave_speeds().pressure.powi(2) * model.density();
     for jacobian in [0.5, 0.9, 0.999, 1.0, 1.001, 1.2, 2.5] {
         let h = 1e-5;
-        let slope = (model.volumetric_energy(jacobian + h) - model.volumetric_energy(jacobian - h))
+        let slope = (model.volumetric_energy(jacobian + h, crate::ROOM_TEMPERATURE)
+            - model.volumetric_energy(jacobian - h, crate::ROOM_TEMPERATURE))
             / (2.0 * h);
         // Truncation h² and round-off 1e-16/h, both 1e-10, with factors up to ten.
-        assert!((model.volumetric_stress(jacobian) - jacobian * slope).abs() < 1e-8 * scale);
+        assert!(
+            (model.volumetric_stress(jacobian, crate::ROOM_TEMPERATURE) - jacobian * slope).abs()
+                < 1e-8 * scale
+        );
     }
 }
 
@@ -113,7 +117,7 @@ pub(crate) fn stress_is_symmetric_and_trace_free_if_split<M: Material>(model: &M
         if M::VOLUMETRIC_SPLIT {
             assert!(stress.trace().abs() < 1e-14 * model.shear_modulus());
         } else {
-            assert_eq!(model.volumetric_stress(1.3), 0.0);
+            assert_eq!(model.volumetric_stress(1.3, crate::ROOM_TEMPERATURE), 0.0);
         }
     }
 }
@@ -173,6 +177,7 @@ pub(crate) fn impossible_kinematics_are_errors<M: Material>(model: &M) {
         deformation_gradient: f,
         jacobian,
         dt: 1e-6,
+        temperature: crate::ROOM_TEMPERATURE,
     };
     let mirrored = Mat3::from_diagonal(&Vec3::new(1.0, -1.0, 1.0));
     for now in [

@@ -70,12 +70,12 @@ impl Material for Hencky {
     }
 
     /// κ ln J.
-    fn volumetric_stress(&self, jacobian: f64) -> f64 {
+    fn volumetric_stress(&self, jacobian: f64, _temperature: f64) -> f64 {
         bulk_modulus(self.young_modulus, self.poisson_ratio) * jacobian.ln()
     }
 
     /// ½ κ (ln J)².
-    fn volumetric_energy(&self, jacobian: f64) -> f64 {
+    fn volumetric_energy(&self, jacobian: f64, _temperature: f64) -> f64 {
         let log = jacobian.ln();
         0.5 * bulk_modulus(self.young_modulus, self.poisson_ratio) * log * log
     }

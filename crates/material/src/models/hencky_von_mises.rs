@@ -182,13 +182,13 @@ impl Material for HenckyVonMises {
 
     /// κ ln J.
     #[inline]
-    fn volumetric_stress(&self, jacobian: f64) -> f64 {
+    fn volumetric_stress(&self, jacobian: f64, _temperature: f64) -> f64 {
         bulk_modulus(self.young_modulus, self.poisson_ratio) * jacobian.ln()
     }
 
     /// ½ κ (ln J)².
     #[inline]
-    fn volumetric_energy(&self, jacobian: f64) -> f64 {
+    fn volumetric_energy(&self, jacobian: f64, _temperature: f64) -> f64 {
         let log = jacobian.ln();
         0.5 * bulk_modulus(self.young_modulus, self.poisson_ratio) * log * log
     }

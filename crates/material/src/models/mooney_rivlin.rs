@@ -100,12 +100,12 @@ impl Material for MooneyRivlin {
     }
 
     /// κ J (J − 1).
-    fn volumetric_stress(&self, jacobian: f64) -> f64 {
+    fn volumetric_stress(&self, jacobian: f64, _temperature: f64) -> f64 {
         self.bulk_modulus * jacobian * (jacobian - 1.0)
     }
 
     /// ½ κ (J − 1)².
-    fn volumetric_energy(&self, jacobian: f64) -> f64 {
+    fn volumetric_energy(&self, jacobian: f64, _temperature: f64) -> f64 {
         0.5 * self.bulk_modulus * (jacobian - 1.0) * (jacobian - 1.0)
     }
 

@@ -66,12 +66,12 @@ impl Material for NeoHookean {
     }
 
     /// κ J (J − 1).
-    fn volumetric_stress(&self, jacobian: f64) -> f64 {
+    fn volumetric_stress(&self, jacobian: f64, _temperature: f64) -> f64 {
         bulk_modulus(self.young_modulus, self.poisson_ratio) * jacobian * (jacobian - 1.0)
     }
 
     /// ½ κ (J − 1)².
-    fn volumetric_energy(&self, jacobian: f64) -> f64 {
+    fn volumetric_energy(&self, jacobian: f64, _temperature: f64) -> f64 {
         let change = jacobian - 1.0;
         0.5 * bulk_modulus(self.young_modulus, self.poisson_ratio) * change * change
     }

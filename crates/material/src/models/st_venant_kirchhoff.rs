@@ -86,12 +86,12 @@ impl Material for StVenantKirchhoff {
     }
 
     /// Zero: all stress is at the point.
-    fn volumetric_stress(&self, _jacobian: f64) -> f64 {
+    fn volumetric_stress(&self, _jacobian: f64, _temperature: f64) -> f64 {
         0.0
     }
 
     /// Zero: all energy is at the point.
-    fn volumetric_energy(&self, _jacobian: f64) -> f64 {
+    fn volumetric_energy(&self, _jacobian: f64, _temperature: f64) -> f64 {
         0.0
     }
 

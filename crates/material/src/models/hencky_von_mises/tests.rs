@@ -27,6 +27,7 @@ fn now(f: Mat3, jacobian: f64) -> Kinematics {
         deformation_gradient: f,
         jacobian,
         dt: 1e-6,
+        temperature: crate::ROOM_TEMPERATURE,
     }
 }
 
