@@ -23,6 +23,7 @@ fn eventful(intervals: [usize; 3], scheme: Scheme) -> Model {
             law: Law::Inelastic { restitution: 0.2 },
         },
         velocity: Some([0.0, 0.0, 5.0].map(Signal::Constant)),
+        heat: None,
     });
     model.conditions.push(Condition {
         name: "corner".into(),

@@ -59,6 +59,7 @@ fn impact(scheme: Scheme) -> Model {
             law: Law::Inelastic { restitution: 0.0 },
         },
         velocity: None,
+        heat: None,
     });
     model
 }

@@ -64,6 +64,7 @@ fn model_in(units: Units, scheme: Scheme) -> Model {
             law: Law::Inelastic { restitution: 0.0 },
         },
         velocity: None,
+        heat: None,
     });
     model.conditions.push(Condition {
         name: "pulled".into(),

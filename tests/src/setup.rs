@@ -29,6 +29,7 @@ pub fn particles(smoothing_ratio: f64) -> Scheme {
             ..Default::default()
         },
         projection: true,
+        inertia_scale: 1.0,
         smallest_time_step: 1e-6,
     }
 }
@@ -115,6 +116,7 @@ pub fn free_body(
         }],
         conditions: vec![],
         obstacles: vec![],
+        heat: None,
         scheme,
     }
 }

@@ -1,4 +1,4 @@
-//! `[[boundary]]`: prescribed velocities and tractions.
+//! `[[boundary]]`: prescribed velocities and tractions, temperatures and heat.
 
 use jstsph_geometry::{Dimension, face_areas};
 use jstsph_solver::{Condition, ConditionKind, ModelBody, Signal};
@@ -9,7 +9,7 @@ use crate::error::Problem;
 use crate::schema;
 use crate::section::{Field, Section};
 use crate::selection::{Selected, read_where};
-use crate::signal::{Scope, VARIABLES, signals, velocity_components};
+use crate::signal::{Scope, VARIABLES, signal, signals, velocity_components};
 use crate::units::Measure;
 
 /// Reads one condition.
@@ -27,7 +27,15 @@ pub(crate) fn read_boundary(
         (None, _) => format!("boundary-{number}"),
     };
     section.record("name", name.as_str());
-    let form = section.one_of(&["fixed", "roller", "velocity", "traction"])?;
+    let form = section.one_of(&[
+        "fixed",
+        "roller",
+        "velocity",
+        "traction",
+        "temperature",
+        "heat_flux",
+        "convection",
+    ])?;
     let positions: Vec<Vec3> = selected
         .particles
         .iter()
@@ -65,6 +73,36 @@ pub(crate) fn read_boundary(
                 velocity_components(&field.node, &field.path, dimension, scope)?;
             section.record("velocity", resolved);
             ConditionKind::Velocity(velocity)
+        }
+        "temperature" => {
+            let field = section.need("temperature")?;
+            let (temperature, resolved) =
+                signal(&field.node, &field.path, Measure::TEMPERATURE, scope)?;
+            section.record("temperature", resolved);
+            ConditionKind::Temperature(temperature)
+        }
+        "heat_flux" => {
+            let field = section.need("heat_flux")?;
+            let (flux, resolved) = signal(&field.node, &field.path, Measure::HEAT_FLUX, scope)?;
+            section.record("heat_flux", resolved);
+            let areas = tributary_areas(&section, &selected, &bodies[selected.body])?;
+            ConditionKind::HeatFlux { areas, flux }
+        }
+        "convection" => {
+            let field = section.need("convection")?;
+            let mut table = Section::open(&field.node, &field.path, schema::CONVECTION)?;
+            let coefficient = table.number("coefficient")?;
+            let ambient = table.need("ambient")?;
+            let (ambient, resolved) =
+                signal(&ambient.node, &ambient.path, Measure::TEMPERATURE, scope)?;
+            table.record("ambient", resolved);
+            section.record("convection", table.finish());
+            let areas = tributary_areas(&section, &selected, &bodies[selected.body])?;
+            ConditionKind::Convection {
+                areas,
+                coefficient,
+                ambient,
+            }
         }
         _ => {
             let field = section.need("traction")?;
@@ -121,7 +159,10 @@ fn tributary_areas(
 ) -> Result<Vec<f64>, Problem> {
     let Some(face) = &selected.face else {
         return Err(section
-            .problem("where", "a traction needs a face, whose areas it acts on")
+            .problem(
+                "where",
+                "a traction or heat flux needs a face, whose areas it acts on",
+            )
             .help(format!(
                 "where = \"{}.FACE\", or an `and` with a face in it",
                 body.name

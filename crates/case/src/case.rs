@@ -14,7 +14,7 @@ use crate::plausibility::{self, Facts};
 use crate::probe::read_probe;
 use crate::resolved;
 use crate::schema;
-use crate::scheme::{read_dimension, read_output, read_scheme, read_time};
+use crate::scheme::{read_dimension, read_heat, read_output, read_scheme, read_time};
 use crate::section::Section;
 
 /// A checked case: everything a run needs.
@@ -150,6 +150,10 @@ fn read(name: &str, source: &Source) -> Result<Case, Problem> {
     let (output, table) = read_output(section.node("output").unwrap_or(&empty), time.settings.end)?;
     section.record("output", table);
 
+    let heat = read_heat(section.node("heat"))?.map(|(heat, table)| {
+        section.record("heat", table);
+        heat
+    });
     let materials = Materials::read(section.node("material"))?;
     let context = Context {
         dimension,
@@ -203,6 +207,7 @@ fn read(name: &str, source: &Source) -> Result<Case, Problem> {
         bodies,
         conditions,
         obstacles,
+        heat,
         scheme,
     };
     let warnings = plausibility::warnings(&Facts {

@@ -2,14 +2,14 @@
 
 use jstsph_contact::{Chain, ContactError, Law, Obstacle, Profile, Surface};
 use jstsph_geometry::Dimension;
-use jstsph_solver::{ModelBody, ModelObstacle, Signal};
+use jstsph_solver::{ModelBody, ModelObstacle, ObstacleHeat, Signal};
 use jstsph_tensor::Vec3;
 
 use crate::document::{Node, Value};
 use crate::error::Problem;
 use crate::schema::{self, Limit};
 use crate::section::{Field, Section};
-use crate::signal::{Scope, VARIABLES, velocity_components};
+use crate::signal::{Scope, VARIABLES, signal, velocity_components};
 use crate::units::Measure;
 use crate::value::{number, shown, vector};
 
@@ -52,6 +52,7 @@ pub(crate) fn read_obstacle(
     obstacle
         .validate()
         .map_err(|error| section.problem(form, format!("`{}.{form}`: {error}", section.path())))?;
+    let heat = read_heat(&mut section)?;
     let allowed_overlap = match section.field("allowed_overlap")? {
         Some(_) => Some(section.number("allowed_overlap")?),
         None => None,
@@ -61,13 +62,43 @@ pub(crate) fn read_obstacle(
         check_overlap(&section, form, &obstacle, body, allowed)?;
     }
     Ok(ReadObstacle {
-        model: ModelObstacle { obstacle, velocity },
+        model: ModelObstacle {
+            obstacle,
+            velocity,
+            heat,
+        },
         smallest_fillet: fillets
             .into_iter()
             .filter(|radius| *radius > 0.0)
             .reduce(f64::min),
         resolved: section.finish(),
     })
+}
+
+/// Heat exchange of an obstacle with the bodies that touch it.
+fn read_heat(section: &mut Section<'_>) -> Result<Option<ObstacleHeat>, Problem> {
+    let Some(field) = section.field("heat")? else {
+        return Ok(None);
+    };
+    let mut table = Section::open(&field.node, &field.path, schema::OBSTACLE_HEAT)?;
+    let conductance = table.number("conductance")?;
+    let temperature = table.need("temperature")?;
+    let scope = Scope {
+        variables: &VARIABLES[..1],
+        positions: &[],
+    };
+    let (temperature, resolved) = signal(
+        &temperature.node,
+        &temperature.path,
+        Measure::TEMPERATURE,
+        scope,
+    )?;
+    table.record("temperature", resolved);
+    section.record("heat", table.finish());
+    Ok(Some(ObstacleHeat {
+        conductance,
+        temperature,
+    }))
 }
 
 fn check_overlap(

@@ -13,12 +13,14 @@ mod numerics;
 pub use bodies::{BODY, LATTICE, SELECTION, SHAPES};
 pub(crate) use bodies::{BOX, HALF_SPACE, INITIAL_VELOCITY, ROTATION, SIGNAL};
 pub use conditions::{BOUNDARY, CHAIN, FIELDS, OBSTACLE, OBSTACLE_FORMS, PROBE};
-pub(crate) use conditions::{PROFILE, SIDES, STATISTICS, VELOCITY_COMPONENTS};
+pub(crate) use conditions::{
+    CONVECTION, OBSTACLE_HEAT, PROFILE, SIDES, STATISTICS, VELOCITY_COMPONENTS,
+};
 pub(crate) use numerics::{
     BIHARMONIC, CELLS, FORMULATIONS, INTEGRATORS, JST, LAPLACIANS, PRECISIONS, QUADRATURES,
-    SMOOTHING_REFERENCES, WEIGHTS,
+    SMOOTHING_REFERENCES, VISCOSITY, WEIGHTS,
 };
-pub use numerics::{OUTPUT, SCHEME, STABILISATION, TIME};
+pub use numerics::{HEAT, OUTPUT, SCHEME, STABILISATION, TIME};
 
 /// A whole case file.
 pub const CASE: &[Key] = &[
@@ -46,6 +48,12 @@ pub const CASE: &[Key] = &[
         Table(STABILISATION),
         Optional,
         "dissipation and hourglass control",
+    ),
+    key(
+        "heat",
+        Table(HEAT),
+        Optional,
+        "temperatures change: heat of plastic work, conduction, heat from outside",
     ),
     key(
         "material",

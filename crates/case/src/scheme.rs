@@ -1,7 +1,9 @@
-//! `[time]`, `[scheme]`, `[stabilisation]` and `[output]`.
+//! `[time]`, `[scheme]`, `[stabilisation]`, `[heat]` and `[output]`.
 
 use jstsph_geometry::Dimension;
-use jstsph_solver::{Biharmonic, Integrator, Jst, Quadrature, Scheme, Stabilisation};
+use jstsph_solver::{
+    Biharmonic, Formulation, Heat, Integrator, Jst, Quadrature, Scheme, Stabilisation, Viscosity,
+};
 use jstsph_sph::Kernel;
 
 use crate::case::{OutputSettings, TimeSettings};
@@ -17,6 +19,7 @@ pub(crate) struct Time {
     pub(crate) settings: TimeSettings,
     pub(crate) integrator: Integrator,
     pub(crate) smallest_time_step: f64,
+    pub(crate) inertia_scale: f64,
     pub(crate) resolved: toml::Table,
 }
 
@@ -34,12 +37,38 @@ pub(crate) fn read_time(node: &Node) -> Result<Time, Problem> {
         },
     )?;
     let smallest_time_step = section.number("smallest_step")?;
+    let inertia_scale = read_inertia_scale(&mut section)?;
     Ok(Time {
         settings: TimeSettings { end, cfl },
         integrator,
         smallest_time_step,
+        inertia_scale,
         resolved: section.finish(),
     })
+}
+
+/// `rate_scale` and `mass_scale` are two names of one thing: the factor on the inertia.
+fn read_inertia_scale(section: &mut Section<'_>) -> Result<f64, Problem> {
+    match (section.has("rate_scale"), section.has("mass_scale")) {
+        (true, true) => Err(section
+            .problem("mass_scale", "`time` has both rate_scale and mass_scale")
+            .help("mass_scale = rate_scale^2: give one of them")),
+        (true, false) => section.number("rate_scale").map(|scale| scale * scale),
+        (false, true) => section.number("mass_scale"),
+        (false, false) => Ok(1.0),
+    }
+}
+
+/// Reads `[heat]`; without it temperatures stay.
+pub(crate) fn read_heat(node: Option<&Node>) -> Result<Option<(Heat, toml::Table)>, Problem> {
+    let Some(node) = node else { return Ok(None) };
+    let mut section = Section::open(node, "heat", schema::HEAT)?;
+    let heat = Heat {
+        conduction: section.flag("conduction")?,
+        viscous_heating: section.flag("viscous_heating")?,
+        friction_heating: section.flag("friction_heating")?,
+    };
+    Ok(Some((heat, section.finish())))
 }
 
 /// Reads `[scheme]` and `[stabilisation]`; returns their resolved tables in this order.
@@ -63,7 +92,8 @@ pub(crate) fn read_scheme(
     )?;
     let weights = section.choice("weights", schema::WEIGHTS)?;
     let projection = section.flag_or("projection", !bonds)?;
-    let (stabilisation, resolved) = read_stabilisation(stabilisation, bonds)?;
+    let reference_frame = formulation != Formulation::EulerianKernel;
+    let (stabilisation, resolved) = read_stabilisation(stabilisation, bonds || !reference_frame)?;
     let scheme = Scheme {
         quadrature,
         kernel,
@@ -75,14 +105,15 @@ pub(crate) fn read_scheme(
         cfl: time.settings.cfl,
         stabilisation,
         projection,
+        inertia_scale: time.inertia_scale,
         smallest_time_step: time.smallest_time_step,
     };
     Ok((scheme, section.finish(), resolved))
 }
 
-fn read_stabilisation(node: &Node, bonds: bool) -> Result<(Stabilisation, toml::Table), Problem> {
+fn read_stabilisation(node: &Node, bare: bool) -> Result<(Stabilisation, toml::Table), Problem> {
     let mut section = Section::open(node, "stabilisation", schema::STABILISATION)?;
-    let bare = bonds || section.has("jst");
+    let bare = bare || section.has("jst");
     let upwind = section.number_or("upwind", if bare { 0.0 } else { 0.3 })?;
     let hourglass = section.number("hourglass")?;
     let jst = match section.field("jst")? {
@@ -93,10 +124,23 @@ fn read_stabilisation(node: &Node, bonds: bool) -> Result<(Stabilisation, toml::
             Some(jst)
         }
     };
+    let viscosity = match section.field("viscosity")? {
+        None => None,
+        Some(field) => {
+            let mut table = Section::open(&field.node, &field.path, schema::VISCOSITY)?;
+            let viscosity = Viscosity {
+                linear: table.number("linear")?,
+                quadratic: table.number("quadratic")?,
+            };
+            section.record("viscosity", table.finish());
+            Some(viscosity)
+        }
+    };
     let stabilisation = Stabilisation {
         jst,
         upwind,
         hourglass,
+        viscosity,
     };
     Ok((stabilisation, section.finish()))
 }

@@ -285,6 +285,9 @@ impl<'a> Recorder<'a> {
             .tensor("deformation_gradient", &fields.deformation_gradient[..])
             .tensor("cauchy_stress", &fields.cauchy_stress[..])
             .lattice(self.cells.borrowed());
+        if simulation.has_heat() {
+            frame = frame.scalar("temperature", &fields.temperature[..]);
+        }
         let bodies = &simulation.reference().bodies;
         if bodies.len() > 1 {
             let mut body = vec![0.0; state.position.len()];

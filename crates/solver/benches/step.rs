@@ -27,6 +27,7 @@ fn scheme(quadrature: Quadrature, integrator: Integrator) -> Scheme {
             ..Stabilisation::default()
         },
         projection: !bonds,
+        inertia_scale: 1.0,
         smallest_time_step: 1e-6,
     }
 }
@@ -50,6 +51,7 @@ fn wall(normal: Vec3) -> ModelObstacle {
             law: Law::Inelastic { restitution: 0.0 },
         },
         velocity: None,
+        heat: None,
     }
 }
 
@@ -72,6 +74,7 @@ fn model(
         }],
         conditions: Vec::new(),
         obstacles,
+        heat: None,
         scheme,
     }
 }

@@ -57,6 +57,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 law: Law::Inelastic { restitution: 0.0 },
             },
             velocity: None,
+            heat: None,
         }],
         scheme: Scheme {
             quadrature: if bonds {
@@ -80,6 +81,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 ..Default::default()
             },
             projection: !bonds,
+            inertia_scale: 1.0,
             smallest_time_step: 1e-6,
         },
     };

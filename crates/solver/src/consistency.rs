@@ -2,7 +2,7 @@
 
 use crate::SolverError;
 use crate::constraint::MAX_OBSTACLES;
-use crate::model::{ConditionKind, Formulation, Model};
+use crate::model::{Formulation, Integrator, Model, Quadrature};
 
 /// Refuses a model whose parts do not fit together, or whose numbers are out of range.
 pub(crate) fn check(model: &Model) -> Result<(), SolverError> {
@@ -70,7 +70,7 @@ pub(crate) fn check(model: &Model) -> Result<(), SolverError> {
                 condition.name
             ));
         }
-        if let ConditionKind::Traction { areas, .. } = &condition.kind
+        if let Some(areas) = condition.kind.areas()
             && areas.len() != condition.particles.len()
         {
             return inconsistent(format!(
@@ -90,7 +90,24 @@ pub(crate) fn check(model: &Model) -> Result<(), SolverError> {
             return inconsistent(format!("{name} is {value}, it must be positive"));
         }
     }
-    if scheme.formulation == Formulation::MomentumGradient
+    if !(scheme.inertia_scale.is_finite() && scheme.inertia_scale > 0.0) {
+        return inconsistent(format!(
+            "the mass scaling is {}, it must be positive",
+            scheme.inertia_scale
+        ));
+    }
+    if model.heat.is_none()
+        && let Some(condition) = model.conditions.iter().find(|c| c.kind.is_thermal())
+    {
+        return inconsistent(format!(
+            "condition \"{}\" acts on the temperature, but the model has no heat",
+            condition.name
+        ));
+    }
+    if scheme.formulation == Formulation::EulerianKernel {
+        check_eulerian(model)?;
+    }
+    if !scheme.formulation.integrates_jacobian()
         && scheme.stabilisation.jst.is_some_and(|jst| jst.on_jacobian)
     {
         return inconsistent(
@@ -98,4 +115,27 @@ pub(crate) fn check(model: &Model) -> Result<(), SolverError> {
         );
     }
     Ok(())
+}
+
+/// The Eulerian-kernel formulation exists for comparison: particles, leapfrog, viscosity.
+fn check_eulerian(model: &Model) -> Result<(), SolverError> {
+    let scheme = &model.scheme;
+    let stabilisation = &scheme.stabilisation;
+    let refused = if scheme.quadrature != Quadrature::Particles {
+        "needs quadrature = \"particles\""
+    } else if scheme.integrator != Integrator::Leapfrog {
+        "needs the leapfrog integrator"
+    } else if stabilisation.jst.is_some()
+        || stabilisation.upwind != 0.0
+        || stabilisation.hourglass != 0.0
+    {
+        "has no stabilisation but artificial viscosity: the others live in the reference configuration"
+    } else if model.heat.is_some_and(|heat| heat.conduction) {
+        "does not conduct heat"
+    } else {
+        return Ok(());
+    };
+    Err(SolverError::Inconsistent {
+        what: format!("formulation \"eulerian-kernel\" {refused}"),
+    })
 }

@@ -11,7 +11,7 @@ use crate::state::{ContactSlot, Ledger, State};
 
 /// Gap below which a particle touches a wall, as a fraction of the spacing: a node that lies on
 /// the wall must count as touching, or it keeps an inward momentum that its strains feel.
-const CONTACT_TOLERANCE: f64 = 1e-6;
+pub(crate) const CONTACT_TOLERANCE: f64 = 1e-6;
 
 /// Penetration above which a particle is put back, as a fraction of the spacing.
 const LARGEST_PENETRATION: f64 = 1e-4;

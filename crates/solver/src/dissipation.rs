@@ -3,9 +3,9 @@
 use jstsph_tensor::Vec3;
 
 use crate::model::{Biharmonic, Jst, Stabilisation};
-use crate::parallel;
 use crate::reference::Reference;
 use crate::state::{State, Workspace};
+use crate::{parallel, viscosity};
 
 impl Biharmonic {
     /// κ⁽⁴⁾ at an equivalent plastic strain, (4.2).
@@ -55,11 +55,16 @@ pub(crate) fn evaluate(
 ) {
     match &stabilisation.jst {
         Some(jst) => apply_jst(jst, reference, state, plastic_strain, work),
-        None if stabilisation.upwind != 0.0 => work.dissipation.fill(Vec3::zeros()),
+        None if stabilisation.upwind != 0.0 || stabilisation.viscosity.is_some() => {
+            work.dissipation.fill(Vec3::zeros());
+        }
         None => {}
     }
     if stabilisation.upwind != 0.0 {
         add_upwind(stabilisation.upwind, reference, state, work);
+    }
+    if let Some(viscosity) = &stabilisation.viscosity {
+        viscosity::add(viscosity, reference, state, work);
     }
 }
 

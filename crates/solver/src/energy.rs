@@ -2,6 +2,7 @@
 
 use jstsph_tensor::{Vec3, double_dot};
 
+use crate::heat::HeatProcess;
 use crate::parallel;
 use crate::simulation::Simulation;
 use crate::{force, stress};
@@ -23,16 +24,25 @@ pub struct Energies {
     pub external: f64,
     /// Work of obstacles so far (negative: they took energy).
     pub contact: f64,
+    /// Heat content above that of the start.
+    pub thermal: f64,
+    /// Heat made of plastic, viscous and friction work so far: counted in `thermal` and where it
+    /// was dissipated, so taken out of the balance once.
+    pub heat_generated: f64,
+    /// Heat from outside so far.
+    pub heat_supplied: f64,
     /// Kinetic and elastic energy at the start.
     pub initial: f64,
 }
 
 impl Energies {
     /// Energy that appeared from nowhere, J: kinetic + elastic + plastic + numerical + hourglass
-    /// − external − contact − initial.
+    /// + thermal − heat_generated − heat_supplied − external − contact − initial.
     #[must_use]
     pub fn error(&self) -> f64 {
-        self.kinetic + self.elastic + self.plastic + self.numerical + self.hourglass
+        self.kinetic + self.elastic + self.plastic + self.numerical + self.hourglass + self.thermal
+            - self.heat_generated
+            - self.heat_supplied
             - self.external
             - self.contact
             - self.initial
@@ -49,6 +59,9 @@ impl Energies {
             self.hourglass,
             self.external,
             self.contact,
+            self.thermal,
+            self.heat_generated,
+            self.heat_supplied,
             self.initial,
         ]
         .into_iter()
@@ -110,6 +123,14 @@ impl Simulation {
             })
         };
         let coefficient = self.scheme.stabilisation.hourglass;
+        let heat = |of: fn(&HeatProcess) -> &Vec<f64>| {
+            self.heat.as_ref().map_or(0.0, |heat| {
+                let per_volume = of(heat);
+                parallel::sum(per_volume.len(), 0.0, |a| {
+                    reference.volume[a] * per_volume[a]
+                })
+            })
+        };
         Energies {
             kinetic,
             elastic: stress::elastic_energy(
@@ -129,6 +150,12 @@ impl Simulation {
             },
             external: work(|work| work.external),
             contact: work(|work| work.contact),
+            thermal: self
+                .heat
+                .as_ref()
+                .map_or(0.0, |heat| heat.content(reference, &self.state)),
+            heat_generated: heat(|heat| &heat.generated),
+            heat_supplied: heat(|heat| &heat.supplied),
             initial: self.initial_energy,
         }
     }

@@ -74,6 +74,22 @@ pub enum SolverError {
         /// Smallest principal stretch there.
         stretch: f64,
     },
+    /// A temperature at which a property of the material is not defined.
+    #[error(
+        "{place}: the temperature is {temperature:.6} K, but the {property} of its material is given from {low} K to {high:.6e} K"
+    )]
+    Temperature {
+        /// Where and when.
+        place: Box<Place>,
+        /// Temperature, K.
+        temperature: f64,
+        /// Property.
+        property: &'static str,
+        /// Lowest temperature of the property, K.
+        low: f64,
+        /// Highest temperature of the property, K.
+        high: f64,
+    },
     /// A saved state does not belong to this model.
     #[error("the saved state does not fit this case: {what}")]
     ForeignState {

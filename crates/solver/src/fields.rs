@@ -27,6 +27,8 @@ pub struct ParticleFields {
     pub pressure: Vec<f64>,
     /// Equivalent plastic strain.
     pub equivalent_plastic_strain: Vec<f64>,
+    /// Temperature, K.
+    pub temperature: Vec<f64>,
     /// Pressure wave speed in the reference configuration over the smallest stretch (3.17), m/s.
     pub wave_speed: Vec<f64>,
 }
@@ -58,6 +60,7 @@ impl Simulation {
             von_mises_stress: vec![0.0; particles],
             pressure: vec![0.0; particles],
             equivalent_plastic_strain: vec![0.0; particles],
+            temperature: state.temperature.clone(),
             wave_speed: vec![0.0; particles],
         };
         for a in 0..particles {

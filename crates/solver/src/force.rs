@@ -180,7 +180,7 @@ impl Loads {
             let Some(signals) = signals else { continue };
             let position = &reference.position[body.particles.clone()];
             parallel::fill(&mut external_force[body.particles.clone()], |a| {
-                vector(signals, time, &position[a]) * body.density
+                vector(signals, time, &position[a]) * body.material_density
             });
         }
         for condition in &self.tractions {

@@ -2,6 +2,7 @@
 
 use jstsph_tensor::Vec3;
 
+use crate::model::Formulation;
 use crate::simulation::{Simulation, work_of};
 use crate::state::{Impulse, Ledger, State, Work};
 use crate::{SolverError, parallel, strain};
@@ -44,6 +45,7 @@ pub(crate) fn step(simulation: &mut Simulation, end: f64) -> Result<(), SolverEr
     simulation.advance_time(dt, end);
     simulation.evaluate_stress(dt)?;
     simulation.commit_history();
+    simulation.advance_heat(dt)?;
 
     simulation.forces(|state, a| state.position[a]);
     if simulation.time >= end {
@@ -72,13 +74,16 @@ impl Simulation {
 
     pub(crate) fn drift_strains(&mut self, dt: f64) {
         self.book_jacobian_dissipation(dt);
-        strain::drift(
-            self.strains(),
-            &self.reference,
-            &mut self.state,
-            &mut self.work,
-            dt,
-        );
+        let strains = self.strains();
+        let (reference, state, work) = (&self.reference, &mut self.state, &mut self.work);
+        if let Some(heat) = &mut self.heat {
+            heat.open(state);
+        }
+        if strains.formulation == Formulation::Displacement {
+            strain::from_positions(strains, reference, state, work);
+        } else {
+            strain::drift(strains, reference, state, work, dt);
+        }
     }
 
     pub(crate) fn advance_time(&mut self, dt: f64, end: f64) {

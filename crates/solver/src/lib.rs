@@ -31,6 +31,7 @@
 //!     }],
 //!     conditions: vec![],
 //!     obstacles: vec![],
+//!     heat: None,
 //!     scheme: Scheme {
 //!         quadrature: Quadrature::Bonds,
 //!         kernel: jstsph_sph::Kernel::QuinticSpline,
@@ -42,6 +43,7 @@
 //!         cfl: 0.5,
 //!         stabilisation: Stabilisation::default(),
 //!         projection: false,
+//!         inertia_scale: 1.0,
 //!         smallest_time_step: 1e-6,
 //!     },
 //! };
@@ -62,8 +64,10 @@ mod constraint;
 mod dissipation;
 mod energy;
 mod error;
+mod eulerian;
 mod fields;
 mod force;
+mod heat;
 mod leapfrog;
 mod model;
 mod parallel;
@@ -79,14 +83,15 @@ mod stress;
 mod testing;
 mod time_step;
 mod tvd_runge_kutta;
+mod viscosity;
 
 pub use energy::{Energies, Momenta, PaperEnergies};
 pub use error::{Place, SolverError};
 pub use fields::ParticleFields;
 pub use model::{
-    Biharmonic, Condition, ConditionKind, Formulation, Integrator, Jst, Laplacian, Model,
-    ModelBody, ModelObstacle, Quadrature, Scheme, Signal, SignalFunction, SmoothingReference,
-    Stabilisation, Weights,
+    Biharmonic, Condition, ConditionKind, Formulation, Heat, Integrator, Jst, Laplacian, Model,
+    ModelBody, ModelObstacle, ObstacleHeat, Quadrature, Scheme, Signal, SignalFunction,
+    SmoothingReference, Stabilisation, Viscosity, Weights,
 };
 pub use probe::{Field, Probe, ProbeKind, Statistic};
 pub use reference::{BodyReference, Reference, Shares};

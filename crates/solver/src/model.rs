@@ -21,8 +21,22 @@ pub struct Model {
     pub conditions: Vec<Condition>,
     /// Rigid obstacles, which act on every body.
     pub obstacles: Vec<ModelObstacle>,
+    /// What becomes of heat; without it every particle keeps its temperature.
+    pub heat: Option<Heat>,
     /// Discretisation, stabilisation and time integration.
     pub scheme: Scheme,
+}
+
+/// Which heat is generated, and whether it flows. Every body then needs a material with thermal
+/// properties.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Heat {
+    /// Heat flows inside the bodies; without it every particle is on its own (adiabatic).
+    pub conduction: bool,
+    /// What the artificial viscosity takes from the motion becomes heat.
+    pub viscous_heating: bool,
+    /// What friction takes from the motion becomes heat of the body, all of it.
+    pub friction_heating: bool,
 }
 
 /// One deformable body.
@@ -68,6 +82,46 @@ pub enum ConditionKind {
         /// Traction per axis.
         traction: [Signal; 3],
     },
+    /// Temperature, K.
+    Temperature(Signal),
+    /// Heat that enters per reference area and time, W/m², with the tributary areas in m².
+    HeatFlux {
+        /// Tributary areas, one per particle of the condition.
+        areas: Vec<f64>,
+        /// Heat flux into the body.
+        flux: Signal,
+    },
+    /// Heat exchange with surroundings, h (T_ambient − T) per reference area.
+    Convection {
+        /// Tributary areas, one per particle of the condition.
+        areas: Vec<f64>,
+        /// h, W/(m² K).
+        coefficient: f64,
+        /// Temperature of the surroundings, K.
+        ambient: Signal,
+    },
+}
+
+impl ConditionKind {
+    /// Whether it acts on the temperature.
+    #[must_use]
+    pub fn is_thermal(&self) -> bool {
+        matches!(
+            self,
+            Self::Temperature(_) | Self::HeatFlux { .. } | Self::Convection { .. }
+        )
+    }
+
+    /// Tributary areas of the condition's particles, for the kinds that act on a face.
+    #[must_use]
+    pub fn areas(&self) -> Option<&[f64]> {
+        match self {
+            Self::Traction { areas, .. }
+            | Self::HeatFlux { areas, .. }
+            | Self::Convection { areas, .. } => Some(areas),
+            Self::Velocity(_) | Self::Temperature(_) => None,
+        }
+    }
 }
 
 /// A rigid obstacle and its motion.
@@ -77,6 +131,18 @@ pub struct ModelObstacle {
     pub obstacle: Obstacle,
     /// Velocity of its translation, m/s, a function of time only; `None` when it rests.
     pub velocity: Option<[Signal; 3]>,
+    /// Heat exchange with the particles that touch it; `None` when it insulates.
+    pub heat: Option<ObstacleHeat>,
+}
+
+/// Heat exchange between an obstacle and the particles in contact with it, h (T_obstacle − T) per
+/// current area of contact.
+#[derive(Clone, Debug)]
+pub struct ObstacleHeat {
+    /// Contact conductance h, W/(m² K).
+    pub conductance: f64,
+    /// Temperature of the obstacle, K, a function of time only.
+    pub temperature: Signal,
 }
 
 /// A function of time and reference position.
@@ -172,6 +238,21 @@ pub enum Formulation {
     MomentumGradientJacobian,
     /// {p, F}: H = cof F and J = det F evaluated.
     MomentumGradient,
+    /// {p} alone: F = grad x by the corrected operators, H = cof F, J = det F (Ba & Gakwaya).
+    Displacement,
+    /// Classical SPH with neighbours and kernels in the current configuration, for comparison.
+    EulerianKernel,
+}
+
+impl Formulation {
+    /// Whether J is an unknown of its own.
+    #[must_use]
+    pub fn integrates_jacobian(self) -> bool {
+        matches!(
+            self,
+            Self::MomentumGradientCofactorJacobian | Self::MomentumGradientJacobian
+        )
+    }
 }
 
 /// Time integration scheme.
@@ -221,6 +302,15 @@ pub struct Jst {
     pub laplacian: Laplacian,
 }
 
+/// Artificial viscosity of Monaghan 1992 between approaching particles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Viscosity {
+    /// α of the linear term.
+    pub linear: f64,
+    /// β of the quadratic term.
+    pub quadratic: f64,
+}
+
 /// Everything that is added to the bare scheme to suppress unseen or underresolved motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stabilisation {
@@ -230,6 +320,8 @@ pub struct Stabilisation {
     pub upwind: f64,
     /// Coefficient ζ of the hourglass stiffness; zero switches it off.
     pub hourglass: f64,
+    /// Artificial viscosity, when wanted.
+    pub viscosity: Option<Viscosity>,
 }
 
 /// Discretisation, stabilisation and time integration.
@@ -255,6 +347,11 @@ pub struct Scheme {
     pub stabilisation: Stabilisation,
     /// Whether resultants and torques of internal forces and dissipation are projected out (3.15).
     pub projection: bool,
+    /// Factor on the density in the inertia, and there alone: mass scaling. A process that is run
+    /// s times faster in time, with its rates and conductivities scaled back, obeys the same
+    /// equations with the factor s² (docs/theory.md), so that times and rates stay those of the
+    /// process.
+    pub inertia_scale: f64,
     /// The run stops when the time step falls below this fraction of the first one.
     pub smallest_time_step: f64,
 }

@@ -17,6 +17,8 @@ pub enum Field {
     Jacobian,
     /// Wave speed (3.17), m/s.
     WaveSpeed,
+    /// Temperature, K.
+    Temperature,
     /// Component of the displacement, m.
     Displacement(usize),
     /// Component of the position, m.
@@ -196,6 +198,7 @@ impl crate::Simulation {
             Field::Pressure => fields.pressure[a],
             Field::Jacobian => self.state().jacobian[a],
             Field::WaveSpeed => fields.wave_speed[a],
+            Field::Temperature => fields.temperature[a],
             Field::Displacement(axis) => {
                 self.state().position[a][axis] - self.reference().position[a][axis]
             }

@@ -22,7 +22,8 @@ pub struct Reference {
     pub point_volume: Vec<f64>,
     /// Reference positions of all evaluation points, m.
     pub point_position: Vec<Vec3>,
-    /// Density of every particle, kg/m³.
+    /// Density of every particle in the inertia, p = ρ v: that of the material times the mass
+    /// scaling, kg/m³.
     pub density: Vec<f64>,
     /// The bodies.
     pub bodies: Vec<BodyReference>,
@@ -37,9 +38,11 @@ pub struct BodyReference {
     pub particles: Range<usize>,
     /// Its evaluation points.
     pub points: Range<usize>,
-    /// Density, kg/m³.
+    /// Density in the inertia: that of the material times the mass scaling, kg/m³.
     pub density: f64,
-    /// Pressure wave speed of the undeformed material, m/s.
+    /// Density of the material, which body forces and heat see, kg/m³.
+    pub material_density: f64,
+    /// Pressure wave speed of the undeformed material with the density of the inertia, m/s.
     pub wave_speed: f64,
     /// Shear modulus, Pa.
     pub shear_modulus: f64,
@@ -223,21 +226,25 @@ impl Reference {
                 )
             }
         };
-        let pairs = (stabilisation.upwind != 0.0 || stabilisation.hourglass != 0.0)
-            .then(symmetric)
-            .transpose()?;
+        let pairs = (stabilisation.upwind != 0.0
+            || stabilisation.hourglass != 0.0
+            || stabilisation.viscosity.is_some())
+        .then(symmetric)
+        .transpose()?;
 
+        let material_density = input.material.density();
+        let density = material_density * scheme.inertia_scale;
         let first = self.position.len();
         self.position.extend_from_slice(&body.positions);
         self.volume.extend_from_slice(&volume);
-        self.density
-            .extend(std::iter::repeat_n(input.material.density(), particles));
+        self.density.extend(std::iter::repeat_n(density, particles));
         self.bodies.push(BodyReference {
             name: input.name.clone(),
             particles: first..self.position.len(),
             points: first_point..self.point_volume.len(),
-            density: input.material.density(),
-            wave_speed: input.material.wave_speeds().pressure,
+            density,
+            material_density,
+            wave_speed: input.material.wave_speeds().pressure / scheme.inertia_scale.sqrt(),
             shear_modulus: input.material.shear_modulus(),
             spacing: body.spacing,
             support,

@@ -203,9 +203,13 @@ impl Simulation {
             ),
             (
                 "scalars".to_owned(),
-                vec![self.initial_energy, self.first_dt],
+                vec![self.initial_energy, self.first_dt, self.smallest_stretch],
             ),
         ];
+        if let Some(heat) = &self.heat {
+            arrays.push(("heat_generated".to_owned(), heat.generated.clone()));
+            arrays.push(("heat_supplied".to_owned(), heat.supplied.clone()));
+        }
         for (k, material) in self.materials.iter().enumerate() {
             arrays.push((
                 format!("history_{k}"),
@@ -253,7 +257,12 @@ impl Simulation {
             slot.corrections = *count as u32;
             slot.cache = Default::default();
         }
-        let scalars = arrays.get("scalars", 2)?;
+        if let Some(heat) = &mut self.heat {
+            arrays.scalars("heat_generated", &mut heat.generated)?;
+            arrays.scalars("heat_supplied", &mut heat.supplied)?;
+        }
+        let scalars = arrays.get("scalars", 3)?;
+        self.smallest_stretch = scalars[2];
         self.initial_energy = scalars[0];
         self.first_dt = scalars[1];
         for (k, material) in self.materials.iter_mut().enumerate() {

@@ -5,8 +5,10 @@ use jstsph_tensor::Vec3;
 
 use crate::constraint::{Obstacles, Prescribed};
 use crate::error::Place;
+use crate::eulerian::CurrentKernels;
 use crate::force::Loads;
-use crate::model::{Integrator, Model, Scheme};
+use crate::heat::{HeatProcess, HeatStep, OutOfRange};
+use crate::model::{Formulation, Integrator, Model, Scheme};
 use crate::reference::Reference;
 use crate::state::{Impulse, Ledger, State, Work, Workspace};
 use crate::strain::Strains;
@@ -31,6 +33,10 @@ pub struct Simulation {
     pub(crate) prescribed: Prescribed,
     pub(crate) obstacles: Obstacles,
     loads: Loads,
+    /// Neighbours and kernels of the present positions, for the formulation that has them.
+    eulerian: Option<Box<CurrentKernels>>,
+    /// Temperatures that change, when they do.
+    pub(crate) heat: Option<Box<HeatProcess>>,
     /// State at the beginning of a Runge-Kutta step; empty for the leapfrog.
     pub(crate) start: Option<Box<State>>,
     /// Equivalent plastic strain of the points, kept when a dissipation depends on it.
@@ -41,6 +47,8 @@ pub struct Simulation {
     /// Whether momentum and positions belong to the same time.
     pub(crate) synchronised: bool,
     pub(crate) initial_energy: f64,
+    /// Smallest principal stretch of the points when the step was last chosen.
+    pub(crate) smallest_stretch: f64,
     /// First time step, to which the floor is relative; zero before it is known.
     pub(crate) first_dt: f64,
 }
@@ -57,7 +65,7 @@ impl Simulation {
             .bodies
             .iter()
             .flat_map(|body| {
-                let density = body.material.density();
+                let density = body.material.density() * model.scheme.inertia_scale;
                 body.initial_velocity
                     .iter()
                     .map(move |velocity| velocity * density)
@@ -85,7 +93,10 @@ impl Simulation {
             contact: obstacles.new_slots(particles),
             condition_impulse: vec![Vec3::zeros(); prescribed.len()],
         };
-        let work = Workspace::new(&reference);
+        let mut work = Workspace::new(&reference);
+        if model.scheme.formulation == Formulation::Displacement {
+            work.displacement = vec![Vec3::zeros(); particles];
+        }
         let start =
             (model.scheme.integrator == Integrator::TvdRungeKutta).then(|| Box::new(state.clone()));
         let plastic = if model.scheme.stabilisation.jst.is_some() {
@@ -95,6 +106,9 @@ impl Simulation {
         };
         let mut simulation = Self {
             loads: Loads::new(&model),
+            eulerian: (model.scheme.formulation == Formulation::EulerianKernel)
+                .then(|| Box::new(CurrentKernels::new(&model, &reference))),
+            heat: HeatProcess::new(&model, &reference, &materials)?,
             scheme: model.scheme,
             reference,
             materials,
@@ -110,6 +124,7 @@ impl Simulation {
             step: 0,
             synchronised: true,
             initial_energy: 0.0,
+            smallest_stretch: 1.0,
             first_dt: 0.0,
         };
         // Momenta at time zero obey the prescribed velocities, without an impulse.
@@ -181,6 +196,12 @@ impl Simulation {
         &self.reference
     }
 
+    /// Whether temperatures change.
+    #[must_use]
+    pub fn has_heat(&self) -> bool {
+        self.heat.as_ref().is_some_and(|heat| heat.is_active())
+    }
+
     /// The scheme in use.
     #[must_use]
     pub fn scheme(&self) -> &Scheme {
@@ -207,6 +228,7 @@ impl Simulation {
         if !dt.is_finite() {
             return Err(self.not_finite(stable.point));
         }
+        self.smallest_stretch = stable.stretch;
         if self.first_dt == 0.0 {
             self.first_dt = dt;
         }
@@ -220,7 +242,17 @@ impl Simulation {
         Ok(if rest <= dt * 1.001 { rest } else { dt })
     }
 
+    /// G of the present momenta, where anything asks for it.
     pub(crate) fn velocity_gradient(&mut self) {
+        if self.scheme.formulation == Formulation::Displacement
+            && self.scheme.stabilisation.upwind == 0.0
+        {
+            return;
+        }
+        if let Some(kernels) = &mut self.eulerian {
+            kernels.velocity_gradient(&self.reference, &self.state, &mut self.work);
+            return;
+        }
         strain::velocity_gradient(&self.reference, &self.state, &mut self.work);
     }
 
@@ -228,7 +260,10 @@ impl Simulation {
     /// ones is taken out about `lever`.
     pub(crate) fn forces(&mut self, lever: impl Fn(&State, usize) -> Vec3 + Sync) {
         let stabilisation = &self.scheme.stabilisation;
-        force::internal(&self.reference, &mut self.work);
+        match &mut self.eulerian {
+            Some(kernels) => kernels.forces(&self.reference, &self.state, &mut self.work),
+            None => force::internal(&self.reference, &mut self.work),
+        }
         if stabilisation.upwind != 0.0 || stabilisation.hourglass != 0.0 {
             force::average_to_particles(
                 &self.reference,
@@ -245,14 +280,18 @@ impl Simulation {
                 &mut self.work,
             );
         }
-        let dissipates = stabilisation.jst.is_some() || stabilisation.upwind != 0.0;
-        dissipation::evaluate(
-            stabilisation,
-            &self.reference,
-            &self.state,
-            &self.plastic_strain,
-            &mut self.work,
-        );
+        let dissipates = stabilisation.jst.is_some()
+            || stabilisation.upwind != 0.0
+            || stabilisation.viscosity.is_some();
+        if self.eulerian.is_none() {
+            dissipation::evaluate(
+                stabilisation,
+                &self.reference,
+                &self.state,
+                &self.plastic_strain,
+                &mut self.work,
+            );
+        }
         if self.scheme.projection {
             let state = &self.state;
             let lever = |a: usize| lever(state, a);
@@ -285,6 +324,24 @@ impl Simulation {
             *total += plastic_work[q];
         });
         self.refresh_plastic_strain();
+    }
+
+    /// Temperatures over the step of `dt` that has just been committed; the clock shows its end.
+    pub(crate) fn advance_heat(&mut self, dt: f64) -> Result<(), SolverError> {
+        let Some(heat) = &mut self.heat else {
+            return Ok(());
+        };
+        let step = HeatStep {
+            reference: &self.reference,
+            materials: &self.materials,
+            quadrature: self.scheme.quadrature,
+            displacement: &self.obstacles.displacement,
+            time: self.time,
+            dt,
+            smallest_stretch: self.smallest_stretch,
+        };
+        heat.advance(step, &mut self.state, &self.work)
+            .map_err(|failure| self.out_of_range(failure))
     }
 
     pub(crate) fn refresh_plastic_strain(&mut self) {
@@ -362,6 +419,23 @@ impl Simulation {
             time_step,
             limit,
             stretch: stable.stretch,
+        }
+    }
+
+    fn out_of_range(&self, failure: OutOfRange) -> SolverError {
+        let particle = self.reference.bodies[failure.body].particles.start + failure.particle;
+        let mut place = self.place(
+            failure.body,
+            failure.particle,
+            self.state.position[particle].into(),
+        );
+        place.what = "particle";
+        SolverError::Temperature {
+            place,
+            temperature: failure.temperature,
+            property: failure.property,
+            low: failure.range.0,
+            high: failure.range.1,
         }
     }
 

@@ -69,6 +69,10 @@ pub(crate) struct Workspace {
     pub(crate) dissipation: Vec<Vec3>,
     /// D(J), 1/s.
     pub(crate) jacobian_dissipation: Vec<f64>,
+    /// Heat made by the artificial viscosity, W/m³ of reference volume; empty without it.
+    pub(crate) viscous_heating: Vec<f64>,
+    /// x − X, for the formulation that takes F from it; empty otherwise.
+    pub(crate) displacement: Vec<Vec3>,
     /// Tractions and body forces per unit reference volume, N/m³.
     pub(crate) external_force: Vec<Vec3>,
     /// First differences (Laplacians) of p and J.
@@ -96,6 +100,8 @@ impl Workspace {
             internal_force: vec![Vec3::zeros(); particles],
             dissipation: vec![Vec3::zeros(); particles],
             jacobian_dissipation: vec![0.0; particles],
+            viscous_heating: vec![0.0; averaged],
+            displacement: Vec::new(),
             external_force: vec![Vec3::zeros(); particles],
             laplacian: vec![Vec3::zeros(); particles],
             jacobian_laplacian: vec![0.0; particles],

@@ -132,6 +132,27 @@ pub(crate) fn euler(
     constrain(strains, reference, state);
 }
 
+/// F = 1 + grad(x − X) with the operator of (3.6), H = cof F and J = det F: the strains of the
+/// displacement formulation (Ba & Gakwaya 2018). [eq:displacement-gradient]
+pub(crate) fn from_positions(
+    strains: Strains,
+    reference: &Reference,
+    state: &mut State,
+    work: &mut Workspace,
+) {
+    let position = &state.position;
+    parallel::fill(&mut work.displacement, |a| {
+        position[a] - reference.position[a]
+    });
+    for body in &reference.bodies {
+        let displacement = &work.displacement[body.particles.clone()];
+        parallel::fill(&mut state.deformation_gradient[body.points.clone()], |q| {
+            Mat3::identity() + body.gradient.gradient_at(q, displacement)
+        });
+    }
+    constrain(strains, reference, state);
+}
+
 /// Evaluates the measures that the reduced systems do not integrate: H = cof F and J = det F.
 pub(crate) fn constrain(strains: Strains, reference: &Reference, state: &mut State) {
     if strains.formulation == Formulation::MomentumGradientCofactorJacobian {
@@ -139,7 +160,7 @@ pub(crate) fn constrain(strains: Strains, reference: &Reference, state: &mut Sta
     }
     let gradients: &[Mat3] = &state.deformation_gradient;
     parallel::fill(&mut state.cofactor, |q| cofactor(&gradients[q]));
-    if strains.formulation == Formulation::MomentumGradient {
+    if !strains.formulation.integrates_jacobian() {
         for body in &reference.bodies {
             let gradients = &gradients[body.points.clone()];
             parallel::fill(&mut state.jacobian[body.particles.clone()], |a| {

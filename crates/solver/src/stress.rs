@@ -8,7 +8,7 @@ use jstsph_material::{
 };
 use jstsph_tensor::{Mat3, double_dot};
 
-use crate::model::{Formulation, Quadrature};
+use crate::model::Quadrature;
 use crate::parallel;
 use crate::reference::{BodyReference, Reference};
 use crate::state::{State, Workspace};
@@ -30,7 +30,7 @@ struct Points<'a> {
 impl Points<'_> {
     /// Whether J is det F at the points themselves.
     fn without_jacobian(&self) -> bool {
-        self.strains.formulation == Formulation::MomentumGradient
+        !self.strains.formulation.integrates_jacobian()
     }
 
     /// det F by the unknowns F and H, ⅓ H : F.

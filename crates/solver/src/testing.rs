@@ -52,6 +52,7 @@ pub(crate) fn scheme(quadrature: Quadrature, integrator: Integrator) -> Scheme {
         cfl: 0.3,
         stabilisation: Stabilisation::default(),
         projection: !bonds,
+        inertia_scale: 1.0,
         smallest_time_step: 1e-6,
     }
 }
@@ -109,6 +110,7 @@ pub(crate) fn model(nodes: [usize; 3], material: MaterialSpec, scheme: Scheme) -
         bodies: vec![body("block", nodes, material)],
         conditions: Vec::new(),
         obstacles: Vec::new(),
+        heat: None,
         scheme,
     }
 }
@@ -129,6 +131,7 @@ pub(crate) fn impact(nodes: [usize; 3], scheme: Scheme) -> Model {
             law: Law::Inelastic { restitution: 0.0 },
         },
         velocity: None,
+        heat: None,
     });
     model
 }

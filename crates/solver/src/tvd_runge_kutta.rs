@@ -1,5 +1,6 @@
 //! Two-stage TVD Runge-Kutta (3.16), the paper's integrator.
 
+use crate::model::Formulation;
 use crate::simulation::{Simulation, work_of};
 use crate::state::{Impulse, State};
 use crate::strain::constrain;
@@ -40,6 +41,7 @@ pub(crate) fn step(simulation: &mut Simulation, end: f64) -> Result<(), SolverEr
     simulation.advance_clock(dt, end);
     simulation.evaluate_stress(dt)?;
     simulation.commit_history();
+    simulation.advance_heat(dt)?;
     simulation.close_books();
     Ok(())
 }
@@ -52,6 +54,9 @@ impl Simulation {
     pub(crate) fn save_start(&mut self) {
         if let Some(start) = &mut self.start {
             start.copy_from(&self.state);
+        }
+        if let Some(heat) = &mut self.heat {
+            heat.open(&self.state);
         }
     }
 
@@ -66,7 +71,10 @@ impl Simulation {
             ledger,
             ..
         } = self;
-        strain::euler(strains, reference, state, work, dt);
+        let from_positions = strains.formulation == Formulation::Displacement;
+        if !from_positions {
+            strain::euler(strains, reference, state, work, dt);
+        }
         let State {
             position, momentum, ..
         } = state;
@@ -81,6 +89,9 @@ impl Simulation {
                 *p += (work.dissipation[a] + work.external_force[a] - work.internal_force[a]) * dt;
             },
         );
+        if from_positions {
+            strain::from_positions(strains, reference, &mut self.state, &mut self.work);
+        }
     }
 
     /// Forces of stage 2, with the lever arms xⁿ⁺¹ = ½ (xⁿ + x* + Δt p*/ρ).
@@ -128,7 +139,11 @@ impl Simulation {
                 *h = (start.cofactor[q] + *h) * 0.5;
             },
         );
-        constrain(strains, reference, state);
+        if strains.formulation == Formulation::Displacement {
+            strain::from_positions(strains, reference, state, &mut self.work);
+        } else {
+            constrain(strains, reference, state);
+        }
     }
 
     /// Work of the impulses of a Runge-Kutta step, with the mean velocity of the step: their sum

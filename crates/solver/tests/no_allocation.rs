@@ -37,6 +37,7 @@ fn model(quadrature: Quadrature, integrator: Integrator, formulation: Formulatio
             body,
             material: library()[0].spec.clone(),
             body_force: Some([0.0, -9.81, 0.0].map(Signal::Constant)),
+            heat: None,
         }],
         conditions: vec![
             Condition {
@@ -94,6 +95,7 @@ fn model(quadrature: Quadrature, integrator: Integrator, formulation: Formulatio
                 hourglass: 0.01,
             },
             projection: true,
+            inertia_scale: 1.0,
             smallest_time_step: 1e-6,
         },
     }

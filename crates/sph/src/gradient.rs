@@ -288,6 +288,30 @@ impl GradientOperator {
         Vec3::new(x, y, z)
     }
 
+    /// Σ_c f_c B_qc: gradient of a scalar field of the particles at one point.
+    #[inline]
+    #[must_use]
+    pub fn scalar_gradient_at(&self, point: usize, field: &[f64]) -> Vec3 {
+        let (indices, weights) = self.rows.row(point);
+        indices
+            .iter()
+            .zip(weights)
+            .fold(Vec3::zeros(), |sum, (&c, w)| {
+                sum + Vec3::from(*w) * field[c as usize]
+            })
+    }
+
+    /// Σ_q v_q · B_qc: with v = V q, a flux times the volume of its point, minus the weak divergence
+    /// at one particle. The sum over all particles vanishes to round-off, because Σ_c B_qc = 0.
+    #[inline]
+    #[must_use]
+    pub fn scalar_divergence_at(&self, particle: usize, vectors: &[Vec3]) -> f64 {
+        let (indices, weights) = self.columns.row(particle);
+        indices.iter().zip(weights).fold(0.0, |sum, (&q, w)| {
+            sum + vectors[q as usize].dot(&Vec3::from(*w))
+        })
+    }
+
     /// Σ_q V_q B_qc for every particle: zero for inner nodes and the outward area vector for
     /// boundary nodes when summation by parts holds, so that a constant stress gives no inner
     /// force. Its inner values, over a face area, measure how far a body is from that.

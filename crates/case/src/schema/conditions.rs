@@ -43,6 +43,56 @@ pub const BOUNDARY: &[Key] = &[
         Optional,
         "force per reference area of a face",
     ),
+    key(
+        "temperature",
+        Signal(Measure::TEMPERATURE),
+        Optional,
+        "prescribed temperature; needs [heat]",
+    ),
+    key(
+        "heat_flux",
+        Signal(Measure::HEAT_FLUX),
+        Optional,
+        "heat into the body per reference area of a face; needs [heat]",
+    ),
+    key(
+        "convection",
+        Table(CONVECTION),
+        Optional,
+        "heat exchange with surroundings through a face; needs [heat]",
+    ),
+];
+
+/// Heat exchange with surroundings.
+pub(crate) const CONVECTION: &[Key] = &[
+    key(
+        "coefficient",
+        Number(Measure::HEAT_TRANSFER, Limit::NotNegative),
+        Required,
+        "heat flux per difference of temperature",
+    ),
+    key(
+        "ambient",
+        Signal(Measure::TEMPERATURE),
+        Required,
+        "temperature of the surroundings",
+    ),
+];
+
+/// Heat exchange with an obstacle.
+pub(crate) const OBSTACLE_HEAT: &[Key] = &[
+    key(
+        "conductance",
+        Number(Measure::HEAT_TRANSFER, Limit::NotNegative),
+        Required,
+        "heat flux per difference of temperature where a body touches it",
+    ),
+    key(
+        "temperature",
+        Signal(Measure::TEMPERATURE),
+        Required,
+        "temperature of the obstacle, a function of t only",
+    ),
 ];
 
 /// Velocity components by axis.
@@ -103,6 +153,12 @@ pub const OBSTACLE: &[Key] = &[
         Table(VELOCITY_COMPONENTS),
         Optional,
         "velocity of its translation, functions of t only; at rest unless given",
+    ),
+    key(
+        "heat",
+        Table(OBSTACLE_HEAT),
+        Optional,
+        "heat exchange with bodies that touch it; it insulates unless given",
     ),
 ];
 
@@ -280,6 +336,7 @@ pub const FIELDS: &[(&str, Field)] = &[
     ("pressure", Field::Pressure),
     ("jacobian", Field::Jacobian),
     ("wave_speed", Field::WaveSpeed),
+    ("temperature", Field::Temperature),
     ("displacement_x", Field::Displacement(0)),
     ("displacement_y", Field::Displacement(1)),
     ("displacement_z", Field::Displacement(2)),

@@ -1,4 +1,4 @@
-//! Keys of `[time]`, `[scheme]`, `[stabilisation]` and `[output]`.
+//! Keys of `[time]`, `[scheme]`, `[stabilisation]`, `[heat]` and `[output]`.
 
 use jstsph_solver::{Formulation, Integrator, Laplacian, Quadrature, SmoothingReference, Weights};
 use jstsph_sph::Kernel;
@@ -35,6 +35,18 @@ pub const TIME: &[Key] = &[
         Default("1e-6"),
         "the run stops when the time step falls below this fraction of the first",
     ),
+    key(
+        "rate_scale",
+        Number(Measure::NUMBER, Limit::Positive),
+        Optional,
+        "a slow process computed this many times faster; times, velocities, strain rates and heat stay those of the process, inertia grows by the square",
+    ),
+    key(
+        "mass_scale",
+        Number(Measure::NUMBER, Limit::Positive),
+        Optional,
+        "factor on the density in the inertia alone: rate_scale squared",
+    ),
 ];
 
 /// Integrators by name.
@@ -55,7 +67,7 @@ pub const SCHEME: &[Key] = &[
         "formulation",
         Choice(|| names(FORMULATIONS)),
         Default("\"pFHJ\""),
-        "unknowns of the mixed system (3.14)",
+        "unknowns of the mixed system (3.14); displacement: F from the positions (Ba & Gakwaya); eulerian-kernel: classical SPH, for comparison",
     ),
     key(
         "kernel",
@@ -100,6 +112,8 @@ pub(crate) const FORMULATIONS: &[(&str, Formulation)] = &[
     ("pFHJ", Formulation::MomentumGradientCofactorJacobian),
     ("pFJ", Formulation::MomentumGradientJacobian),
     ("pF", Formulation::MomentumGradient),
+    ("displacement", Formulation::Displacement),
+    ("eulerian-kernel", Formulation::EulerianKernel),
 ];
 
 /// Smoothing references by name.
@@ -133,6 +147,50 @@ pub const STABILISATION: &[Key] = &[
         Table(JST),
         Optional,
         "Jameson-Schmidt-Turkel dissipation (3.13)",
+    ),
+    key(
+        "viscosity",
+        Table(VISCOSITY),
+        Optional,
+        "artificial viscosity of approaching particles (Monaghan 1992)",
+    ),
+];
+
+/// `stabilisation.viscosity`.
+pub(crate) const VISCOSITY: &[Key] = &[
+    key(
+        "linear",
+        COEFFICIENT,
+        Default("0.1"),
+        "coefficient of the linear term",
+    ),
+    key(
+        "quadratic",
+        COEFFICIENT,
+        Default("0.2"),
+        "coefficient of the quadratic term",
+    ),
+];
+
+/// `[heat]`.
+pub const HEAT: &[Key] = &[
+    key(
+        "conduction",
+        Flag,
+        Default("true"),
+        "whether heat flows inside the bodies; false is adiabatic",
+    ),
+    key(
+        "viscous_heating",
+        Flag,
+        Default("true"),
+        "whether what the artificial viscosity takes from the motion becomes heat",
+    ),
+    key(
+        "friction_heating",
+        Flag,
+        Default("true"),
+        "whether what friction takes from the motion becomes heat of the body",
     ),
 ];
 

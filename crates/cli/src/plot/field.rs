@@ -69,6 +69,7 @@ pub(super) fn quantity(frame: &StoredFrame, name: &str) -> Quantity {
         "von_mises_stress" | "pressure" | "cauchy_stress" => "Pa",
         "displacement" => "m",
         "velocity" | "wave_speed" => "m/s",
+        "temperature" => "K",
         _ => "",
     };
     let mut text = match name {

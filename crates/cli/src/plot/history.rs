@@ -286,6 +286,7 @@ fn described(field: Field) -> (&'static str, &'static str) {
         Field::Pressure => ("pressure, tension positive", "Pa"),
         Field::Jacobian => ("volume ratio J", ""),
         Field::WaveSpeed => ("wave speed", "m/s"),
+        Field::Temperature => ("temperature", "K"),
         Field::Displacement(_) => ("displacement", "m"),
         Field::Position(_) => ("position", "m"),
         Field::Velocity(_) => ("velocity", "m/s"),
