@@ -2,6 +2,7 @@
 
 mod conservation;
 mod determinism;
+mod displacement;
 mod energy_balance;
 mod invariance;
 mod tumbling;

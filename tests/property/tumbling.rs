@@ -1,7 +1,9 @@
 //! The body that most properties are checked on: free, translating, rotating, yielding.
 
 use jstsph_geometry::{Body, Dimension};
-use jstsph_solver::{Biharmonic, Integrator, Jst, Laplacian, Model, Scheme, Stabilisation};
+use jstsph_solver::{
+    Biharmonic, Formulation, Integrator, Jst, Laplacian, Model, Scheme, Stabilisation,
+};
 use jstsph_tensor::{Mat3, Vec3};
 use jstsph_tests::setup;
 
@@ -113,6 +115,20 @@ pub(crate) fn conserving_schemes() -> Vec<(&'static str, Scheme)> {
         (
             "bonds, leapfrog, upwind, hourglass",
             with(bonds, upwind_and_hourglass()),
+        ),
+        (
+            "displacement, leapfrog, viscosity, no projection",
+            Scheme {
+                projection: false,
+                ..setup::displacement(0.9)
+            },
+        ),
+        (
+            "displacement, RK2",
+            Scheme {
+                formulation: Formulation::Displacement,
+                ..runge_kutta(with(particles, bare), 0.1)
+            },
         ),
     ]
 }

@@ -6,7 +6,7 @@ use jstsph_material::hardening::{Hardening, Linear};
 use jstsph_material::models::{HenckyVonMises, NeoHookean};
 use jstsph_solver::{
     Condition, ConditionKind, Formulation, Integrator, Model, ModelBody, Quadrature, Scheme,
-    Signal, Simulation, SmoothingReference, Stabilisation, Weights,
+    Signal, Simulation, SmoothingReference, Stabilisation, Viscosity, Weights,
 };
 use jstsph_sph::Kernel;
 use jstsph_tensor::Vec3;
@@ -41,6 +41,22 @@ pub fn bonds(smoothing_ratio: f64) -> Scheme {
         quadrature: Quadrature::Bonds,
         stabilisation: Stabilisation::default(),
         projection: false,
+        ..particles(smoothing_ratio)
+    }
+}
+
+/// F from the positions at the particles, leapfrog, artificial viscosity: the scheme of Ba & Gakwaya.
+#[must_use]
+pub fn displacement(smoothing_ratio: f64) -> Scheme {
+    Scheme {
+        formulation: Formulation::Displacement,
+        stabilisation: Stabilisation {
+            viscosity: Some(Viscosity {
+                linear: 0.1,
+                quadratic: 0.2,
+            }),
+            ..Default::default()
+        },
         ..particles(smoothing_ratio)
     }
 }
