@@ -239,11 +239,10 @@ fn in_temperature(node: &Node, path: &str, key: &Key) -> Result<toml::Value, Pro
     const LISTS: [&str; 2] = ["temperatures", "values"];
     for (name, value) in entries(node, path, "a table")? {
         if !LISTS.contains(&name) {
-            return Err(Problem::new(
-                &value.origin,
-                format!("unknown key `{name}` in {path}"),
-            )
-            .allowed(name, LISTS.into_iter()));
+            return Err(
+                Problem::new(&value.origin, format!("unknown key `{name}` in {path}"))
+                    .allowed(name, LISTS.into_iter()),
+            );
         }
     }
     let column = |name: &str, measure| {
@@ -314,7 +313,7 @@ hardening = { johnson_cook = { a = "420 MPa", b = "465 MPa", n = 0.5, c = 0.08, 
 
     fn read(text: &str) -> Result<MaterialSpec, String> {
         let node = crate::document::parse(text, &[]).expect("TOML");
-        read_material(&node, "material.al").map_err(|problem| problem.to_string())
+        read_material(&node, "material.al").map_err(|problem| problem.message)
     }
 
     #[test]
@@ -338,15 +337,51 @@ hardening = { johnson_cook = { a = "420 MPa", b = "465 MPa", n = 0.5, c = 0.08, 
     #[test]
     fn problems_inside_nested_tables_name_their_key() {
         for (from, to, message) in [
-            ("taylor_quinney = 0.9", "taylor_quinney = 1.5", "`material.al.hencky_von_mises.thermal.taylor_quinney` must be at least 0 and at most 1, but is 1.5"),
-            ("conductivity = \"180 W/m/K\"", "conductivity = \"180 W/m\"", "`material.al.hencky_von_mises.thermal.conductivity` must be a conductivity (W/m/K), but \"180 W/m\" is"),
-            ("conductivity = \"180 W/m/K\", ", "", "`conductivity` is missing in material.al.hencky_von_mises.thermal"),
-            ("expansion = ", "expantion = ", "unknown key `expantion` in material.al.hencky_von_mises.thermal"),
-            ("\"400 degC\"", "\"20 degC\"", "material.al.hencky_von_mises.young_modulus.temperatures"),
-            ("\"50 GPa\"", "-50", "young_modulus.values = -50 is out of range: it must be greater than 0"),
-            ("values = [\"70 GPa\", \"50 GPa\"]", "values = [\"70 GPa\"]", "young_modulus.values has 1 entries and temperatures has 2"),
-            (", values = [\"70 GPa\", \"50 GPa\"]", "", "`values` is missing in material.al.hencky_von_mises.young_modulus"),
-            ("m = 0.86", "m = 0.86, slow_rates_soften = 1", "must be true or false"),
+            (
+                "taylor_quinney = 0.9",
+                "taylor_quinney = 1.5",
+                "`material.al.hencky_von_mises.thermal.taylor_quinney` must be at least 0 and at most 1, but is 1.5",
+            ),
+            (
+                "conductivity = \"180 W/m/K\"",
+                "conductivity = \"180 W/m\"",
+                "`material.al.hencky_von_mises.thermal.conductivity` must be a conductivity (W/m/K), but \"180 W/m\" is",
+            ),
+            (
+                "conductivity = \"180 W/m/K\", ",
+                "",
+                "`conductivity` is missing in material.al.hencky_von_mises.thermal",
+            ),
+            (
+                "expansion = ",
+                "expantion = ",
+                "unknown key `expantion` in material.al.hencky_von_mises.thermal",
+            ),
+            (
+                "\"400 degC\"",
+                "\"20 degC\"",
+                "material.al.hencky_von_mises.young_modulus.temperatures",
+            ),
+            (
+                "\"50 GPa\"",
+                "-50",
+                "young_modulus.values = -50 is out of range: it must be greater than 0",
+            ),
+            (
+                "values = [\"70 GPa\", \"50 GPa\"]",
+                "values = [\"70 GPa\"]",
+                "young_modulus.values has 1 entries and temperatures has 2",
+            ),
+            (
+                ", values = [\"70 GPa\", \"50 GPa\"]",
+                "",
+                "`values` is missing in material.al.hencky_von_mises.young_modulus",
+            ),
+            (
+                "m = 0.86",
+                "m = 0.86, slow_rates_soften = 1",
+                "must be true or false",
+            ),
             ("\"641 degC\"", "\"20 degC\"", "melting_temperature"),
         ] {
             assert!(WARM.contains(from), "{from}");
