@@ -1,7 +1,7 @@
 //! Everything that can be written in a case file, for `jstsph list` and the documentation.
 
 use jstsph_material::hardening::LAWS;
-use jstsph_material::{Description, MODELS, library};
+use jstsph_material::{Description, MODELS, Range, library};
 use jstsph_sph::Kernel;
 
 use crate::expression::{CONSTANTS, FUNCTIONS, FUNCTIONS_OF_TWO};
@@ -142,18 +142,30 @@ fn keys(keys: &[Key]) -> Vec<ListEntry> {
 }
 
 fn described(descriptions: &[Description]) -> Vec<ListEntry> {
-    let key = |key: &jstsph_material::Key| {
-        entry(
-            key.name,
-            format!("{} [{}, {}]", key.meaning, key.unit, key.range),
-        )
-    };
     descriptions
         .iter()
         .map(|description| ListEntry {
             name: description.name.to_owned(),
             meaning: description.summary.to_owned(),
-            keys: description.keys.iter().map(key).collect(),
+            keys: parameters(description.keys),
+        })
+        .collect()
+}
+
+/// Keys of a material's or a law's table.
+fn parameters(keys: &[jstsph_material::Key]) -> Vec<ListEntry> {
+    keys.iter()
+        .map(|key| {
+            let optional = if key.optional { ", optional" } else { "" };
+            let (range, inner) = match key.range {
+                Range::Table(keys) => ("a table".to_owned(), parameters(keys)),
+                range => (range.to_string(), Vec::new()),
+            };
+            ListEntry {
+                name: key.name.to_owned(),
+                meaning: format!("{} [{}, {range}{optional}]", key.meaning, key.unit),
+                keys: inner,
+            }
         })
         .collect()
 }

@@ -8,7 +8,7 @@ use crate::error::{Origin, Problem};
 use crate::schema::Limit;
 use crate::section::Field;
 use crate::units::{Measure, parse_unit};
-use crate::value::number;
+use crate::value::{number, wrong_type};
 
 /// The materials of one case by name.
 pub(crate) struct Materials {
@@ -170,6 +170,9 @@ fn parameters(node: &Node, path: &str, keys: &'static [Key]) -> Result<toml::Tab
     let mut table = toml::Table::new();
     for key in keys {
         let Some(entry) = node.entry(key.name) else {
+            if key.optional {
+                continue;
+            }
             return Err(
                 Problem::new(&node.origin, format!("`{}` is missing in {path}", key.name)).help(
                     format!(
@@ -193,31 +196,71 @@ fn parameter(node: &Node, path: &str, key: &Key) -> Result<toml::Value, Problem>
     let measure = measure_of(key);
     match key.range {
         Range::OneOf(choices) => choice(node, path, choices, key.name),
-        Range::Ascending => match &node.value {
-            Value::Array(items) => items
-                .iter()
-                .map(|item| number(item, path, measure, Limit::Any).map(toml::Value::Float))
-                .collect::<Result<Vec<_>, _>>()
-                .map(toml::Value::Array),
-            other => Err(Problem::new(
-                &node.origin,
-                format!(
-                    "`{path}` must be an array of numbers, but is {}",
-                    other.kind()
-                ),
-            )),
+        Range::Table(keys) => parameters(node, path, keys).map(toml::Value::Table),
+        Range::Flag => match node.value {
+            Value::Boolean(flag) => Ok(flag.into()),
+            _ => Err(wrong_type(node, path, "true or false")),
         },
-        range => {
-            let value = number(node, path, measure, Limit::Any)?;
-            if range.contains(value) {
-                return Ok(value.into());
-            }
-            Err(Problem::new(
-                &node.origin,
-                format!("`{path}` must be {range}, but is {value}"),
-            ))
+        Range::Ascending => list(node, path, measure),
+        Range::InTemperature(range) => match &node.value {
+            Value::Table(_) => in_temperature(node, path, key),
+            _ => single(node, path, measure, *range),
+        },
+        range => single(node, path, measure, range),
+    }
+}
+
+/// A number in its range.
+fn single(node: &Node, path: &str, measure: Measure, range: Range) -> Result<toml::Value, Problem> {
+    let value = number(node, path, measure, Limit::Any)?;
+    if range.contains(value) {
+        return Ok(value.into());
+    }
+    Err(Problem::new(
+        &node.origin,
+        format!("`{path}` must be {range}, but is {value}"),
+    ))
+}
+
+/// An array of numbers. Their range is the material's to check.
+fn list(node: &Node, path: &str, measure: Measure) -> Result<toml::Value, Problem> {
+    match &node.value {
+        Value::Array(items) => items
+            .iter()
+            .map(|item| number(item, path, measure, Limit::Any).map(toml::Value::Float))
+            .collect::<Result<Vec<_>, _>>()
+            .map(toml::Value::Array),
+        _ => Err(wrong_type(node, path, "an array of numbers")),
+    }
+}
+
+/// `{ temperatures = [...], values = [...] }`.
+fn in_temperature(node: &Node, path: &str, key: &Key) -> Result<toml::Value, Problem> {
+    const LISTS: [&str; 2] = ["temperatures", "values"];
+    for (name, value) in entries(node, path, "a table")? {
+        if !LISTS.contains(&name) {
+            return Err(
+                Problem::new(&value.origin, format!("unknown key `{name}` in {path}"))
+                    .allowed(name, LISTS.into_iter()),
+            );
         }
     }
+    let column = |name: &str, measure| {
+        let entry = node.entry(name).ok_or_else(|| {
+            Problem::new(&node.origin, format!("`{name}` is missing in {path}")).help(
+                "a property that depends on the temperature is { temperatures = [...], values = [...] }, \
+                 of the same length",
+            )
+        })?;
+        list(&entry.node, &format!("{path}.{name}"), measure)
+    };
+    let temperatures = column(LISTS[0], Measure::TEMPERATURE)?;
+    let values = column(LISTS[1], measure_of(key))?;
+    Ok(toml::Table::from_iter([
+        (LISTS[0].to_owned(), temperatures),
+        (LISTS[1].to_owned(), values),
+    ])
+    .into())
 }
 
 /// The material crate names units as this crate writes them.
@@ -233,6 +276,7 @@ fn measure_of(key: &Key) -> Measure {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use jstsph_material::Property;
 
     fn check(descriptions: &[Description]) {
         for description in descriptions {
@@ -245,10 +289,104 @@ mod tests {
                         description.name, key.name
                     );
                 }
-                if let Range::OneOf(choices) = key.range {
-                    check(choices);
+                match key.range {
+                    Range::OneOf(choices) => check(choices),
+                    Range::Table(keys) => check(&[Description {
+                        name: key.name,
+                        summary: key.meaning,
+                        keys,
+                    }]),
+                    _ => {}
                 }
             }
+        }
+    }
+
+    const WARM: &str = r#"
+[hencky_von_mises]
+density = 2700
+young_modulus = { temperatures = ["20 degC", "400 degC"], values = ["70 GPa", "50 GPa"] }
+poisson_ratio = 0.33
+thermal = { heat_capacity = "0.9 kJ/kg/K", conductivity = "180 W/m/K", taylor_quinney = 0.9, expansion = "23e-6 1/K", reference_temperature = "20 degC" }
+hardening = { johnson_cook = { a = "420 MPa", b = "465 MPa", n = 0.5, c = 0.08, m = 0.86, reference_rate = "0.1 1/s", reference_temperature = "25 degC", melting_temperature = "641 degC" } }
+"#;
+
+    fn read(text: &str) -> Result<MaterialSpec, String> {
+        let node = crate::document::parse(text, &[]).expect("TOML");
+        read_material(&node, "material.al").map_err(|problem| problem.message)
+    }
+
+    #[test]
+    fn thermal_properties_have_units_and_may_depend_on_the_temperature() {
+        let MaterialSpec::HenckyVonMises(metal) = read(WARM).expect("sound") else {
+            panic!("another model")
+        };
+        assert_eq!(
+            metal.young_modulus,
+            Property::Table {
+                temperatures: vec![293.15, 673.15],
+                values: vec![70e9, 50e9],
+            }
+        );
+        let thermal = metal.thermal.expect("given");
+        assert_eq!(thermal.heat_capacity, Property::Constant(900.0));
+        assert_eq!(thermal.conductivity, Property::Constant(180.0));
+        assert_eq!(thermal.reference_temperature, 293.15);
+    }
+
+    #[test]
+    fn problems_inside_nested_tables_name_their_key() {
+        for (from, to, message) in [
+            (
+                "taylor_quinney = 0.9",
+                "taylor_quinney = 1.5",
+                "`material.al.hencky_von_mises.thermal.taylor_quinney` must be at least 0 and at most 1, but is 1.5",
+            ),
+            (
+                "conductivity = \"180 W/m/K\"",
+                "conductivity = \"180 W/m\"",
+                "`material.al.hencky_von_mises.thermal.conductivity` must be a conductivity (W/m/K), but \"180 W/m\" is",
+            ),
+            (
+                "conductivity = \"180 W/m/K\", ",
+                "",
+                "`conductivity` is missing in material.al.hencky_von_mises.thermal",
+            ),
+            (
+                "expansion = ",
+                "expantion = ",
+                "unknown key `expantion` in material.al.hencky_von_mises.thermal",
+            ),
+            (
+                "\"400 degC\"",
+                "\"20 degC\"",
+                "material.al.hencky_von_mises.young_modulus.temperatures",
+            ),
+            (
+                "\"50 GPa\"",
+                "-50",
+                "young_modulus.values = -50 is out of range: it must be greater than 0",
+            ),
+            (
+                "values = [\"70 GPa\", \"50 GPa\"]",
+                "values = [\"70 GPa\"]",
+                "young_modulus.values has 1 entries and temperatures has 2",
+            ),
+            (
+                ", values = [\"70 GPa\", \"50 GPa\"]",
+                "",
+                "`values` is missing in material.al.hencky_von_mises.young_modulus",
+            ),
+            (
+                "m = 0.86",
+                "m = 0.86, slow_rates_soften = 1",
+                "must be true or false",
+            ),
+            ("\"641 degC\"", "\"20 degC\"", "melting_temperature"),
+        ] {
+            assert!(WARM.contains(from), "{from}");
+            let error = read(&WARM.replacen(from, to, 1)).expect_err(to);
+            assert!(error.contains(message), "{to}: {error}");
         }
     }
 

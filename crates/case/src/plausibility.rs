@@ -31,11 +31,12 @@ pub(crate) fn warnings(facts: &Facts<'_>) -> Vec<String> {
 fn bodies(facts: &Facts<'_>, found: &mut Vec<String>) {
     for body in &facts.model.bodies {
         if let MaterialSpec::HenckyVonMises(metal) = &body.material
-            && metal.young_modulus < SOFTEST_METAL
+            && metal.young_modulus.largest() < SOFTEST_METAL
         {
             found.push(format!(
                 "the Young's modulus of body `{}` is {} Pa: a plain number is in Pa; was a unit such as \"GPa\" forgotten?",
-                body.name, metal.young_modulus
+                body.name,
+                metal.young_modulus.largest()
             ));
         }
         let positions = &body.body.positions;

@@ -90,6 +90,12 @@ const NAMED: &[(Measure, &str, &str)] = &[
         "a heat transfer coefficient",
         "W/m^2/K",
     ),
+    (
+        Measure::thermal(2, 0, -2, -1),
+        "a specific heat",
+        "J/kg/K, kJ/kg/K",
+    ),
+    (Measure::thermal(1, 1, -3, -1), "a conductivity", "W/m/K"),
 ];
 
 /// SI units, e.g. `kg/m^3`; derived names where there is one (`Pa`), `1` for a plain number.

@@ -18,7 +18,7 @@ pub enum ParameterError {
     },
     /// Two columns of a table that must have one entry per row each.
     #[error(
-        "{key} has {found} entries and {other} has {expected}: give one of each per point, at least one"
+        "{key} has {found} entries and {other} has {expected}: give one of each per point, at least {least}"
     )]
     Length {
         /// Dotted path of the column.
@@ -29,6 +29,8 @@ pub enum ParameterError {
         other: &'static str,
         /// Number of entries of the other column.
         expected: usize,
+        /// Fewest entries that make sense.
+        least: usize,
     },
     /// A value too small beside another parameter, or beside the entry before it in a list.
     #[error("{key} = {value} must be {relation} {bound}: {reason}")]

@@ -1,22 +1,48 @@
-//! Isotropic hardening laws: flow stress as a function of the equivalent plastic strain. One file
-//! each, one line each; every plastic model can use every law.
+//! Isotropic hardening laws: flow stress as a function of the equivalent plastic strain, its rate and
+//! the temperature. One file each, one line each; every plastic model can use every law.
 //!
-//! A law never softens: in a local continuum softening concentrates in one row of points, whatever
+//! A law never softens with strain: in a local continuum softening concentrates in one row of points, whatever
 //! their spacing, and the answer depends on the spacing. [`HardeningLaw::validate`] refuses it.
 
 use crate::{Description, Key, ParameterError};
 use std::fmt::Debug;
 
-/// Flow stress and its derivative at one equivalent plastic strain.
+/// The state on which a flow stress depends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FlowStress {
-    /// σ_Y, Pa.
-    pub value: f64,
-    /// dσ_Y/dε_p, Pa; may be infinite at ε_p = 0.
-    pub slope: f64,
+pub struct FlowState {
+    /// ε_p ≥ 0.
+    pub plastic_strain: f64,
+    /// dε_p/dt ≥ 0, 1/s: in a step Δε_p/Δt. Zero where yield is tested.
+    pub rate: f64,
+    /// T, K.
+    pub temperature: f64,
 }
 
-/// Flow stress as a function of the equivalent plastic strain.
+/// Flow stress and its derivatives at one state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlowStress {
+    /// σ_Y, Pa. Zero only for molten metal, then at all strains and rates.
+    pub value: f64,
+    /// ∂σ_Y/∂ε_p, Pa; may be infinite at ε_p = 0.
+    pub slope: f64,
+    /// ∂σ_Y/∂(dε_p/dt), Pa s; may be infinite at rate 0.
+    pub rate_slope: f64,
+}
+
+impl FlowStress {
+    /// Of a law that does not depend on the rate.
+    #[inline]
+    #[must_use]
+    pub fn rate_independent(value: f64, slope: f64) -> Self {
+        Self {
+            value,
+            slope,
+            rate_slope: 0.0,
+        }
+    }
+}
+
+/// Flow stress as a function of the equivalent plastic strain, its rate and the temperature.
 pub trait HardeningLaw: Clone + Debug + Send + Sync + 'static {
     /// Name in a case file.
     const NAME: &'static str;
@@ -25,14 +51,14 @@ pub trait HardeningLaw: Clone + Debug + Send + Sync + 'static {
     /// The keys of the law's table.
     const KEYS: &'static [Key];
 
-    /// Checks the parameters: positive initial flow stress, no softening.
+    /// Checks the parameters: positive initial flow stress, no softening with strain or rate.
     ///
     /// # Errors
     /// The first key whose value cannot be used.
     fn validate(&self) -> Result<(), ParameterError>;
 
-    /// σ_Y and its slope at ε_p ≥ 0.
-    fn flow_stress(&self, plastic_strain: f64) -> FlowStress;
+    /// σ_Y and its slopes.
+    fn flow_stress(&self, at: &FlowState) -> FlowStress;
 
     /// Parameter sets on which the conformance tests run.
     fn examples() -> Vec<Self>;
@@ -79,11 +105,11 @@ macro_rules! register_hardening_laws {
                 }
             }
 
-            /// σ_Y and its slope at ε_p ≥ 0.
+            /// σ_Y and its slopes.
             #[inline]
             #[must_use]
-            pub fn flow_stress(&self, plastic_strain: f64) -> FlowStress {
-                match self { $(Self::$law(law) => law.flow_stress(plastic_strain)),+ }
+            pub fn flow_stress(&self, at: &FlowState) -> FlowStress {
+                match self { $(Self::$law(law) => law.flow_stress(at)),+ }
             }
 
             /// Examples of every law.
@@ -114,6 +140,8 @@ register_hardening_laws! {
     voce::Voce,
     ludwik::Ludwik,
     tabulated::Tabulated,
+    johnson_cook::JohnsonCook,
+    zerilli_armstrong::ZerilliArmstrong,
 }
 
 const INITIAL_YIELD_STRESS: Key = Key {
@@ -121,6 +149,7 @@ const INITIAL_YIELD_STRESS: Key = Key {
     unit: "Pa",
     meaning: "flow stress of undeformed material",
     range: crate::Range::Positive,
+    optional: false,
 };
 
 #[cfg(test)]

@@ -14,12 +14,8 @@
 //! use jstsph_material::{Kinematics, Material, MaterialSpec, hardening::{Hardening, Linear}, models::HenckyVonMises};
 //! use jstsph_tensor::{Mat3, von_mises};
 //!
-//! let copper = HenckyVonMises {
-//!     density: 8930.0,
-//!     young_modulus: 117e9,
-//!     poisson_ratio: 0.35,
-//!     hardening: Hardening::Linear(Linear { initial_yield_stress: 0.4e9, modulus: 0.1e9 }),
-//! };
+//! let hardening = Hardening::Linear(Linear { initial_yield_stress: 0.4e9, modulus: 0.1e9 });
+//! let copper = HenckyVonMises::new(8930.0, 117e9, 0.35, hardening);
 //! copper.validate()?;
 //!
 //! // Simple shear by two per cent: far beyond yield.
@@ -43,6 +39,7 @@
 struct Readme;
 
 mod block;
+mod elastic_constants;
 mod error;
 mod history;
 mod library;

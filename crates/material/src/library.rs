@@ -19,29 +19,29 @@ static LIBRARY: LazyLock<Vec<NamedMaterial>> = LazyLock::new(|| {
     vec![
         NamedMaterial {
             name: "copper_taylor",
-            spec: MaterialSpec::HenckyVonMises(HenckyVonMises {
-                density: 8930.0,
-                young_modulus: 117e9,
-                poisson_ratio: 0.35,
-                hardening: Hardening::Linear(Linear {
+            spec: MaterialSpec::HenckyVonMises(HenckyVonMises::new(
+                8930.0,
+                117e9,
+                0.35,
+                Hardening::Linear(Linear {
                     initial_yield_stress: 0.4e9,
                     modulus: 0.1e9,
                 }),
-            }),
+            )),
             source: "Greto & Kulasegaram 2019, Sect. 4.1 and 4.2 (Taylor bar, constrained block)",
         },
         NamedMaterial {
             name: "al1100_ecae",
-            spec: MaterialSpec::HenckyVonMises(HenckyVonMises {
-                density: 2800.0,
-                young_modulus: 69e9,
-                poisson_ratio: 0.33,
-                hardening: Hardening::Swift(Swift {
+            spec: MaterialSpec::HenckyVonMises(HenckyVonMises::new(
+                2800.0,
+                69e9,
+                0.33,
+                Hardening::Swift(Swift {
                     coefficient: 159e6,
                     offset: 0.02,
                     exponent: 0.27,
                 }),
-            }),
+            )),
             source: "Greto & Kulasegaram 2019, Sect. 4.3 (equal channel angular extrusion)",
         },
         NamedMaterial {

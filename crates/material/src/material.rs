@@ -99,10 +99,11 @@ pub trait Material: Clone + Debug + Send + Sync + 'static {
     /// ρ, mass per unit reference volume, kg/m³.
     fn density(&self) -> f64;
 
-    /// μ of the reference state, Pa.
+    /// μ of the reference state, Pa; the largest where it depends on the temperature.
     fn shear_modulus(&self) -> f64;
 
-    /// Wave speeds of the reference state.
+    /// Wave speeds of the reference state; the largest where they depend on the temperature. A pressure
+    /// wave is too fast for heat to flow: its stiffness is the adiabatic one.
     fn wave_speeds(&self) -> WaveSpeeds;
 
     /// History of undeformed material.
@@ -154,8 +155,9 @@ pub trait Material: Clone + Debug + Send + Sync + 'static {
         true
     }
 
-    /// Cauchy stress σ_Y at which the point yields, Pa; `None` for a model that never does.
-    fn flow_stress(&self, _history: &Self::History) -> Option<f64> {
+    /// Cauchy stress σ_Y at which the point flows at a plastic strain rate, 1/s, and a temperature, K,
+    /// in Pa; at rate zero that at which it yields. `None` for a model that never does.
+    fn flow_stress(&self, _history: &Self::History, _rate: f64, _temperature: f64) -> Option<f64> {
         None
     }
 

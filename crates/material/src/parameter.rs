@@ -26,6 +26,8 @@ pub struct Key {
     pub meaning: &'static str,
     /// Which values make sense.
     pub range: Range,
+    /// Whether it may be left out; what that means is in `meaning`.
+    pub optional: bool,
 }
 
 /// Which values a key may have. Infinite values and NaN are never allowed.
@@ -47,8 +49,22 @@ pub enum Range {
         /// Included upper end.
         most: f64,
     },
+    /// From zero up to and including a value.
+    UpTo {
+        /// Included upper end.
+        most: f64,
+    },
+    /// Any number.
+    Any,
     /// A list of numbers, each zero or greater, in ascending order; see the key's meaning.
     Ascending,
+    /// A [`Property`](crate::Property): a number in this range, or a table of temperatures and as
+    /// many values, each in this range.
+    InTemperature(&'static Range),
+    /// `true` or `false`.
+    Flag,
+    /// A table with these keys.
+    Table(&'static [Key]),
     /// A table with exactly one of these names as its key, holding that choice's own keys.
     OneOf(&'static [Description]),
 }
@@ -63,8 +79,22 @@ impl Range {
                 Self::NonNegative | Self::Ascending => value >= 0.0,
                 Self::Between { above, below } => above < value && value < below,
                 Self::PositiveUpTo { most } => 0.0 < value && value <= most,
-                Self::OneOf(_) => false,
+                Self::UpTo { most } => 0.0 <= value && value <= most,
+                Self::Any => true,
+                Self::InTemperature(range) => range.contains(value),
+                Self::Flag | Self::Table(_) | Self::OneOf(_) => false,
             }
+    }
+}
+
+impl Range {
+    /// What each value of a table must be, and a single value too.
+    #[must_use]
+    pub fn of_values(self) -> Self {
+        match self {
+            Self::InTemperature(range) => *range,
+            other => other,
+        }
     }
 }
 
@@ -77,6 +107,19 @@ impl fmt::Display for Range {
                 write!(f, "greater than {above} and less than {below}")
             }
             Self::PositiveUpTo { most } => write!(f, "greater than 0 and at most {most}"),
+            Self::UpTo { most } => write!(f, "at least 0 and at most {most}"),
+            Self::Any => f.write_str("a number"),
+            Self::InTemperature(range) => {
+                write!(f, "{range}; or a table {{ temperatures, values }}")
+            }
+            Self::Flag => f.write_str("true or false"),
+            Self::Table(keys) => {
+                f.write_str("a table of ")?;
+                for (i, key) in keys.iter().enumerate() {
+                    write!(f, "{}{}", if i == 0 { "" } else { ", " }, key.name)?;
+                }
+                Ok(())
+            }
             Self::Ascending => f.write_str("a list in ascending order, each 0 or greater"),
             Self::OneOf(choices) => {
                 f.write_str("one of ")?;
@@ -101,7 +144,7 @@ impl Key {
             Err(ParameterError::OutOfRange {
                 key: self.name.to_owned(),
                 value,
-                range: self.range,
+                range: self.range.of_values(),
             })
         }
     }
@@ -113,6 +156,7 @@ pub(crate) const DENSITY: Key = Key {
     unit: "kg/m^3",
     meaning: "mass per unit reference volume",
     range: Range::Positive,
+    optional: false,
 };
 
 /// Young's modulus of the reference state.
@@ -121,6 +165,13 @@ pub(crate) const YOUNG_MODULUS: Key = Key {
     unit: "Pa",
     meaning: "Young's modulus of small strains",
     range: Range::Positive,
+    optional: false,
+};
+
+/// The same, which may depend on the temperature.
+pub(crate) const YOUNG_MODULUS_IN_TEMPERATURE: Key = Key {
+    range: Range::InTemperature(&YOUNG_MODULUS.range),
+    ..YOUNG_MODULUS
 };
 
 /// Poisson's ratio of the reference state.
@@ -132,6 +183,13 @@ pub(crate) const POISSON_RATIO: Key = Key {
         above: -1.0,
         below: 0.5,
     },
+    optional: false,
+};
+
+/// The same, which may depend on the temperature.
+pub(crate) const POISSON_RATIO_IN_TEMPERATURE: Key = Key {
+    range: Range::InTemperature(&POISSON_RATIO.range),
+    ..POISSON_RATIO
 };
 
 /// μ = E / (2 (1 + ν)), Pa.

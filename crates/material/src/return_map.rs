@@ -1,129 +1,223 @@
 //! The scalar equation of radial return.
 
 use crate::MaterialError;
-use crate::hardening::FlowStress;
+use crate::hardening::{FlowState, FlowStress};
 
 /// Accepted residual, relative to the trial stress: a few thousand units of round-off.
 const TOLERANCE: f64 = 1e-12;
 
 /// Newton converges in two to six iterations for smooth laws; laws with an infinite slope at zero
-/// strain need up to a few dozen to find the scale of a tiny root.
+/// strain or rate need up to a few dozen to find the scale of a tiny root.
 const MAX_ITERATIONS: usize = 100;
 
-/// Δε_p of radial return: the root D of
-///
-/// ```text
-///   g(D) = τ_eq,trial − 3 μ D − J σ_Y(ε_p + D)
-/// ```
-///
-/// Newton's iteration inside a bracket. For a law that does not soften g falls strictly from
-/// g(0) > 0 to g(τ_eq/3μ) < 0, so the root exists and is unique. For linear hardening the first
-/// iterate is exact, D = (τ_eq,trial − J σ_Y) / (3 μ + J H): Greto & Kulasegaram 2019, (A.15), with the
-/// factors J it lacks.
-///
-/// # Arguments
-/// * `trial_stress`: τ_eq,trial, Pa, above J σ_Y(ε_p).
-/// * `start`: σ_Y and its slope at ε_p, which the caller has from testing for yield.
-/// * `flow_stress`: the same at any ε_p; the slope may be infinite.
-///
-/// # Errors
-/// [`MaterialError::ReturnMap`] if the residual stays above 1e-12 of the trial stress.
-#[inline]
-pub(crate) fn plastic_increment(
-    trial_stress: f64,
-    shear_modulus: f64,
-    jacobian: f64,
-    plastic_strain: f64,
-    start: FlowStress,
-    flow_stress: impl Fn(f64) -> FlowStress,
-) -> Result<f64, MaterialError> {
-    let stiffness = 3.0 * shear_modulus;
-    let tolerance = TOLERANCE * trial_stress;
-    let (mut low, mut high) = (0.0, trial_stress / stiffness);
-    let mut increment = 0.0;
-    let mut residual = f64::NAN;
-    for iteration in 0..MAX_ITERATIONS {
-        let flow = if iteration == 0 {
-            start
-        } else {
-            flow_stress(plastic_strain + increment)
-        };
-        residual = trial_stress - stiffness * increment - jacobian * flow.value;
-        // The start is no solution however close the trial stress is to yield: it has no increment.
-        if residual.abs() <= tolerance && iteration > 0 {
-            return Ok(increment);
+/// The scalar problem of one point.
+pub(crate) struct RadialReturn {
+    /// τ_eq,trial, Pa, above J σ_Y at rate zero.
+    pub(crate) trial_stress: f64,
+    /// μ, Pa.
+    pub(crate) shear_modulus: f64,
+    /// J.
+    pub(crate) jacobian: f64,
+    /// ε_p of the committed history.
+    pub(crate) plastic_strain: f64,
+    /// Δt, s; in a step of no time the rate is zero.
+    pub(crate) dt: f64,
+    /// T, K.
+    pub(crate) temperature: f64,
+}
+
+impl RadialReturn {
+    /// Δε_p of radial return: the root D of
+    ///
+    /// ```text
+    ///   g(D) = τ_eq,trial − 3 μ D − J σ_Y(ε_p + D, D/Δt, T)
+    /// ```
+    ///
+    /// Newton's iteration inside a bracket. For a law that does not soften g falls strictly from
+    /// g(0) > 0 to g(τ_eq/3μ) ≤ 0, so the root exists and is unique. For linear hardening the first
+    /// iterate is exact, D = (τ_eq,trial − J σ_Y) / (3 μ + J H): Greto & Kulasegaram 2019, (A.15), with
+    /// the factors J it lacks. Without strength all of the trial stress goes, D = τ_eq,trial/3μ.
+    ///
+    /// # Arguments
+    /// * `start`: σ_Y and its slopes at ε_p and rate zero, which the caller has from testing for yield.
+    /// * `flow_stress`: the same at any state; the slopes may be infinite.
+    ///
+    /// # Errors
+    /// [`MaterialError::ReturnMap`] if the residual stays above 1e-12 of the trial stress.
+    #[inline]
+    pub(crate) fn plastic_increment(
+        &self,
+        start: FlowStress,
+        flow_stress: impl Fn(&FlowState) -> FlowStress,
+    ) -> Result<f64, MaterialError> {
+        let &Self {
+            trial_stress,
+            jacobian,
+            ..
+        } = self;
+        let stiffness = 3.0 * self.shear_modulus;
+        let tolerance = TOLERANCE * trial_stress;
+        let per_time = if self.dt > 0.0 { 1.0 / self.dt } else { 0.0 };
+        let (mut low, mut high) = (0.0, trial_stress / stiffness);
+        if start.value == 0.0 {
+            return Ok(high);
         }
-        if residual > 0.0 {
-            low = increment;
-        } else {
-            high = increment;
-        }
-        increment += residual / (stiffness + jacobian * flow.slope);
-        // An infinite or undefined slope leaves the bracket or does not move; so does an overshoot.
-        if !(low < increment && increment < high) {
-            increment = if low > 0.0 {
-                (low * high).sqrt()
+        let mut increment = 0.0;
+        let mut residual = f64::NAN;
+        for iteration in 0..MAX_ITERATIONS {
+            let flow = if iteration == 0 {
+                start
             } else {
-                1e-3 * high
+                flow_stress(&FlowState {
+                    plastic_strain: self.plastic_strain + increment,
+                    rate: increment * per_time,
+                    temperature: self.temperature,
+                })
             };
+            residual = trial_stress - stiffness * increment - jacobian * flow.value;
+            // The start is no solution however close the trial stress is to yield: it has no increment.
+            if residual.abs() <= tolerance && iteration > 0 {
+                return Ok(increment);
+            }
+            if residual > 0.0 {
+                low = increment;
+            } else {
+                high = increment;
+            }
+            increment +=
+                residual / (stiffness + jacobian * (flow.slope + flow.rate_slope * per_time));
+            // An infinite or undefined slope leaves the bracket or does not move; so does an overshoot.
+            if !(low < increment && increment < high) {
+                increment = if low > 0.0 {
+                    (low * high).sqrt()
+                } else {
+                    1e-3 * high
+                };
+            }
         }
+        Err(MaterialError::ReturnMap {
+            residual,
+            tolerance,
+            iterations: MAX_ITERATIONS,
+        })
     }
-    Err(MaterialError::ReturnMap {
-        residual,
-        tolerance,
-        iterations: MAX_ITERATIONS,
-    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hardening::{HardeningLaw, Ludwik};
+    use crate::hardening::{Hardening, HardeningLaw, JohnsonCook, Ludwik, ZerilliArmstrong};
+
+    fn problem(trial_stress: f64, dt: f64, temperature: f64) -> RadialReturn {
+        RadialReturn {
+            trial_stress,
+            shear_modulus: 40e9,
+            jacobian: 1.0,
+            plastic_strain: 0.0,
+            dt,
+            temperature,
+        }
+    }
 
     #[test]
     fn linear_hardening_has_its_closed_form() {
         let (trial, mu, jacobian, yield_stress, modulus) = (0.9e9, 43e9, 0.97, 0.4e9, 0.1e9);
-        let law = |strain| FlowStress {
-            value: yield_stress + modulus * strain,
-            slope: modulus,
+        let law = |at: &FlowState| {
+            FlowStress::rate_independent(yield_stress + modulus * at.plastic_strain, modulus)
         };
-        let increment = plastic_increment(trial, mu, jacobian, 0.25, law(0.25), law).unwrap();
+        let start = FlowStress::rate_independent(yield_stress + modulus * 0.25, modulus);
+        let increment = RadialReturn {
+            shear_modulus: mu,
+            jacobian,
+            plastic_strain: 0.25,
+            ..problem(trial, 1e-6, 300.0)
+        }
+        .plastic_increment(start, law)
+        .unwrap();
         // Greto & Kulasegaram 2019, (A.15), for Kirchhoff stresses.
         let expected =
             (trial - jacobian * (yield_stress + modulus * 0.25)) / (3.0 * mu + jacobian * modulus);
         assert!((increment / expected - 1.0).abs() < 1e-13);
     }
 
+    /// Solves for a law from undeformed material and asserts that the equation is met.
+    fn assert_solved(law: &Hardening, overstress: f64, dt: f64, temperature: f64) {
+        let at = |increment: f64| FlowState {
+            plastic_strain: increment,
+            rate: increment / dt,
+            temperature,
+        };
+        let start = law.flow_stress(&at(0.0));
+        let trial = start.value * (1.0 + overstress);
+        let increment = problem(trial, dt, temperature)
+            .plastic_increment(start, |at| law.flow_stress(at))
+            .unwrap();
+        let met = trial - 3.0 * 40e9 * increment - law.flow_stress(&at(increment)).value;
+        // The rate is here a quotient, there a product with 1/Δt: a rounding apart.
+        assert!(
+            increment > 0.0 && met.abs() <= 2e-12 * trial,
+            "{law:?} {overstress} {dt}: {increment} misses by {met}"
+        );
+    }
+
+    const OVERSTRESSES: [f64; 6] = [10.0, 1.0, 1e-2, 1e-5, 1e-8, 1e-10];
+
     #[test]
     fn infinite_initial_slope_is_solved_from_the_largest_to_the_smallest_overstress() {
         for exponent in [0.05, 0.2, 0.5, 0.9, 1.0] {
-            let law = Ludwik {
+            let law = Hardening::Ludwik(Ludwik {
                 initial_yield_stress: 0.3e9,
                 coefficient: 0.5e9,
                 exponent,
-            };
-            for overstress in [10.0, 1.0, 1e-2, 1e-5, 1e-8, 1e-10] {
-                let trial = 0.3e9 * (1.0 + overstress);
-                let flow_stress = |strain| law.flow_stress(strain);
-                let increment =
-                    plastic_increment(trial, 40e9, 1.0, 0.0, flow_stress(0.0), flow_stress)
-                        .unwrap();
-                let met = trial - 3.0 * 40e9 * increment - law.flow_stress(increment).value;
-                assert!(
-                    increment > 0.0 && met.abs() <= 1e-12 * trial,
-                    "{exponent} {overstress}"
-                );
+            });
+            for overstress in OVERSTRESSES {
+                assert_solved(&law, overstress, 1e-6, 300.0);
             }
         }
     }
 
     #[test]
+    fn rate_dependence_is_solved_for_steps_of_any_length() {
+        let laws = JohnsonCook::examples()
+            .into_iter()
+            .map(Hardening::JohnsonCook)
+            .chain(
+                ZerilliArmstrong::examples()
+                    .into_iter()
+                    .map(Hardening::ZerilliArmstrong),
+            );
+        for law in laws {
+            for overstress in OVERSTRESSES {
+                for dt in [1e-12, 1e-9, 1e-6, 1e-3, 1.0, 1e3] {
+                    for temperature in [293.15, 900.0] {
+                        assert_solved(&law, overstress, dt, temperature);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn molten_metal_keeps_no_stress() {
+        let law = &JohnsonCook::examples()[0];
+        let start = law.flow_stress(&FlowState {
+            plastic_strain: 0.0,
+            rate: 0.0,
+            temperature: 1400.0,
+        });
+        let increment = problem(1e6, 1e-6, 1400.0)
+            .plastic_increment(start, |at| law.flow_stress(at))
+            .unwrap();
+        assert_eq!(increment, 1e6 / (3.0 * 40e9));
+    }
+
+    #[test]
     fn a_law_that_never_meets_the_stress_is_reported_with_its_residual() {
-        let broken = |_| FlowStress {
-            value: f64::NAN,
-            slope: 0.0,
-        };
-        let error = plastic_increment(1e9, 40e9, 1.0, 0.0, broken(0.0), broken).unwrap_err();
+        let broken = |_: &FlowState| FlowStress::rate_independent(f64::NAN, 0.0);
+        let start = FlowStress::rate_independent(f64::NAN, 0.0);
+        let error = problem(1e9, 1e-6, 300.0)
+            .plastic_increment(start, broken)
+            .unwrap_err();
         assert!(
             matches!(error, MaterialError::ReturnMap { residual, iterations: 100, .. } if residual.is_nan())
         );

@@ -1,5 +1,7 @@
 //! Heat capacity, conductivity and what couples heat to deformation.
 
+use crate::ParameterError;
+use crate::parameter::{Key, Range};
 use serde::{Deserialize, Serialize};
 
 /// A material property that may depend on the temperature.
@@ -83,6 +85,77 @@ impl Property {
         }
     }
 
+    /// Slope in T at `temperature`, per kelvin; at a corner of the table that of the piece above, zero
+    /// outside the table.
+    #[must_use]
+    pub fn slope(&self, temperature: f64) -> f64 {
+        match self {
+            Self::Constant(_) => 0.0,
+            Self::Table {
+                temperatures,
+                values,
+            } => {
+                let next = temperatures.partition_point(|t| *t <= temperature);
+                if next == 0 || next == temperatures.len() {
+                    0.0
+                } else {
+                    (values[next] - values[next - 1])
+                        / (temperatures[next] - temperatures[next - 1])
+                }
+            }
+        }
+    }
+
+    /// Checks the values against the key's range, and that a table is one.
+    ///
+    /// # Errors
+    /// The key, or the list of the table, that cannot be used.
+    pub(crate) fn check(&self, key: &Key) -> Result<(), ParameterError> {
+        let (temperatures, values) = match self {
+            Self::Constant(value) => return key.check(*value),
+            Self::Table {
+                temperatures,
+                values,
+            } => (temperatures, values),
+        };
+        let list = |name: &str| format!("{}.{name}", key.name);
+        if temperatures.len() != values.len() || values.len() < 2 {
+            return Err(ParameterError::Length {
+                key: list("values"),
+                found: values.len(),
+                other: "temperatures",
+                expected: temperatures.len(),
+                least: 2,
+            });
+        }
+        for &temperature in temperatures {
+            TEMPERATURES
+                .check(temperature)
+                .map_err(|error| error.within(key.name))?;
+        }
+        for &value in values {
+            if !key.range.contains(value) {
+                return Err(ParameterError::OutOfRange {
+                    key: list("values"),
+                    value,
+                    range: key.range.of_values(),
+                });
+            }
+        }
+        for pair in temperatures.windows(2) {
+            if pair[1] <= pair[0] {
+                return Err(ParameterError::Order {
+                    key: list("temperatures"),
+                    value: pair[1],
+                    relation: "greater than",
+                    bound: pair[0],
+                    reason: "sort the table by temperature, and give each once",
+                });
+            }
+        }
+        Ok(())
+    }
+
     /// Largest value it takes.
     #[must_use]
     pub fn largest(&self) -> f64 {
@@ -90,6 +163,90 @@ impl Property {
             Self::Constant(value) => *value,
             Self::Table { values, .. } => values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
         }
+    }
+}
+
+impl From<f64> for Property {
+    fn from(value: f64) -> Self {
+        Self::Constant(value)
+    }
+}
+
+/// The temperatures of a table.
+const TEMPERATURES: Key = Key {
+    name: "temperatures",
+    unit: "K",
+    meaning: "temperatures of the table, each greater than the one before",
+    range: Range::Positive,
+    optional: false,
+};
+
+const HEAT_CAPACITY: Key = Key {
+    name: "heat_capacity",
+    unit: "J/kg/K",
+    meaning: "specific heat",
+    range: Range::InTemperature(&Range::Positive),
+    optional: false,
+};
+const CONDUCTIVITY: Key = Key {
+    name: "conductivity",
+    unit: "W/m/K",
+    meaning: "thermal conductivity",
+    range: Range::InTemperature(&Range::NonNegative),
+    optional: false,
+};
+const TAYLOR_QUINNEY: Key = Key {
+    name: "taylor_quinney",
+    unit: "-",
+    meaning: "share of the plastic work that becomes heat",
+    range: Range::UpTo { most: 1.0 },
+    optional: false,
+};
+const EXPANSION: Key = Key {
+    name: "expansion",
+    unit: "1/K",
+    meaning: "linear thermal expansion",
+    range: Range::NonNegative,
+    optional: false,
+};
+const REFERENCE_TEMPERATURE: Key = Key {
+    name: "reference_temperature",
+    unit: "K",
+    meaning: "temperature at which the undeformed body is free of stress",
+    range: Range::Positive,
+    optional: false,
+};
+
+/// The optional table of a model with thermal properties.
+pub(crate) const THERMAL: Key = Key {
+    name: "thermal",
+    unit: "-",
+    meaning: "thermal properties; without them a body keeps its temperature and does not expand",
+    range: Range::Table(&[
+        HEAT_CAPACITY,
+        CONDUCTIVITY,
+        TAYLOR_QUINNEY,
+        EXPANSION,
+        REFERENCE_TEMPERATURE,
+    ]),
+    optional: true,
+};
+
+impl Thermal {
+    /// Checks the values.
+    ///
+    /// # Errors
+    /// The first key whose value cannot be used, as `thermal.<key>`.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        self.check().map_err(|error| error.within(THERMAL.name))
+    }
+
+    fn check(&self) -> Result<(), ParameterError> {
+        self.heat_capacity.check(&HEAT_CAPACITY)?;
+        self.conductivity.check(&CONDUCTIVITY)?;
+        TAYLOR_QUINNEY.check(self.taylor_quinney)?;
+        EXPANSION.check(self.expansion)?;
+        REFERENCE_TEMPERATURE.check(self.reference_temperature)
     }
 }
 

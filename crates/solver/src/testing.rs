@@ -64,11 +64,7 @@ pub(crate) fn copper() -> MaterialSpec {
 
 /// An elastic material with round moduli: κ = 2 GPa, μ = 0.75 GPa, ρ = 1000 kg/m³.
 pub(crate) fn elastic() -> MaterialSpec {
-    MaterialSpec::Hencky(Hencky {
-        density: 1000.0,
-        young_modulus: 2e9,
-        poisson_ratio: 1.0 / 3.0,
-    })
+    MaterialSpec::Hencky(Hencky::new(1000.0, 2e9, 1.0 / 3.0))
 }
 
 /// A box of `nodes` (plane strain when the last is 1) with 1 mm spacing, standing on its lowest

@@ -2,7 +2,8 @@
 
 use super::kinematics::Numbers;
 use super::{
-    consistent, deformed_state, elastic_amplitude, first_piola_stress, respond, stored_energy,
+    TEMPERATURES, consistent, deformed_state, elastic_amplitude, first_piola_stress, respond,
+    stored_energy, thermoelastic_piola_stress,
 };
 use crate::{Kinematics, Material, MaterialError};
 use jstsph_tensor::{Mat3, Vec3};
@@ -35,37 +36,70 @@ pub(crate) fn undeformed_and_rotated_material_is_free_of_stress_and_history<M: M
 pub(crate) fn stress_is_the_derivative_of_the_energy<M: Material>(model: &M) {
     let (initial, amplitude) = (model.initial_history(), elastic_amplitude(model));
     let mut numbers = Numbers::new();
-    for _ in 0..20 {
-        let f = numbers.rotation() * (Mat3::identity() + numbers.matrix() * amplitude);
-        let direction = numbers.matrix();
-        let stress = first_piola_stress(model, &f, &initial);
-        // Energies carry the round-off of F, 1e-16 of stiffness × strain, divided here by h;
-        // truncation is h² of the stiffness.
-        let h = 1e-5;
-        let difference = (stored_energy(model, &(f + direction * h), &initial)
-            - stored_energy(model, &(f - direction * h), &initial))
-            / (2.0 * h);
-        let scale = model.wave_speeds().pressure.powi(2) * model.density();
-        assert!(
-            (stress.dot(&direction) - difference).abs() < scale * (1e-8 * amplitude + h * h),
-            "{model:?} at {f}: P : dF = {}, dΨ = {difference}",
-            stress.dot(&direction)
-        );
+    for temperature in TEMPERATURES {
+        for _ in 0..20 {
+            let f = numbers.rotation() * (Mat3::identity() + numbers.matrix() * amplitude);
+            let direction = numbers.matrix();
+            let at = |f: Mat3| Kinematics {
+                temperature,
+                ..consistent(&f)
+            };
+            // The rest of the work is heat.
+            let stress = first_piola_stress(model, &at(f), &initial)
+                - thermoelastic_piola_stress(model, &at(f));
+            // Energies carry the round-off of F, 1e-16 of stiffness × strain, divided here by h;
+            // truncation is h² of the stiffness.
+            let h = 1e-5;
+            let difference = (stored_energy(model, &at(f + direction * h), &initial)
+                - stored_energy(model, &at(f - direction * h), &initial))
+                / (2.0 * h);
+            let scale = model.wave_speeds().pressure.powi(2) * model.density();
+            assert!(
+                (stress.dot(&direction) - difference).abs() < scale * (1e-8 * amplitude + h * h),
+                "{model:?} at {f}, {temperature} K: P : dF = {}, dΨ = {difference}",
+                stress.dot(&direction)
+            );
+        }
     }
 }
 
 pub(crate) fn volumetric_stress_is_the_derivative_of_the_volumetric_energy<M: Material>(model: &M) {
     let scale = model.wave_speeds().pressure.powi(2) * model.density();
-    for jacobian in [0.5, 0.9, 0.999, 1.0, 1.001, 1.2, 2.5] {
-        let h = 1e-5;
-        let slope = (model.volumetric_energy(jacobian + h, crate::ROOM_TEMPERATURE)
-            - model.volumetric_energy(jacobian - h, crate::ROOM_TEMPERATURE))
-            / (2.0 * h);
-        // Truncation h² and round-off 1e-16/h, both 1e-10, with factors up to ten.
-        assert!(
-            (model.volumetric_stress(jacobian, crate::ROOM_TEMPERATURE) - jacobian * slope).abs()
-                < 1e-8 * scale
-        );
+    for temperature in TEMPERATURES {
+        for jacobian in [0.5, 0.9, 0.999, 1.0, 1.001, 1.2, 2.5] {
+            let h = 1e-5;
+            let energy = |jacobian| model.volumetric_energy(jacobian, temperature);
+            let slope = (energy(jacobian + h) - energy(jacobian - h)) / (2.0 * h);
+            let stored = model.volumetric_stress(jacobian, temperature)
+                - model.thermoelastic_stress(jacobian, temperature);
+            // Truncation h² and round-off 1e-16/h, both 1e-10, with factors up to ten.
+            assert!(
+                (stored - jacobian * slope).abs() < 1e-8 * scale,
+                "{model:?} at J = {jacobian}, {temperature} K"
+            );
+        }
+    }
+}
+
+pub(crate) fn thermoelastic_stress_is_the_derivative_in_temperature<M: Material>(model: &M) {
+    let scale = model.wave_speeds().pressure.powi(2) * model.density();
+    for temperature in [350.0, 500.0, 1200.0] {
+        for jacobian in [0.9, 1.0, 1.02] {
+            let h = 1e-2;
+            let stress = |temperature| model.volumetric_stress(jacobian, temperature);
+            let slope = (stress(temperature + h) - stress(temperature - h)) / (2.0 * h);
+            let found = model.thermoelastic_stress(jacobian, temperature);
+            // Round-off 1e-16/h × T; the stress is at most quadratic in T between corners.
+            let expected = if model.thermal().is_some() {
+                temperature * slope
+            } else {
+                0.0
+            };
+            assert!(
+                (found - expected).abs() < 1e-9 * scale,
+                "{model:?} at J = {jacobian}, {temperature} K: {found} is not {expected}"
+            );
+        }
     }
 }
 
@@ -133,13 +167,22 @@ pub(crate) fn wave_speeds_are_those_of_the_acoustic_tensor<M: Material>(model: &
         let h = 1e-5;
         let stiffness = |amplitude: &Vec3| {
             let change = amplitude * normal.transpose() * h;
-            let stress = first_piola_stress(model, &(Mat3::identity() + change), &initial)
-                - first_piola_stress(model, &(Mat3::identity() - change), &initial);
-            amplitude.dot(&(stress * normal)) / (2.0 * h)
+            let stress = |f| first_piola_stress(model, &consistent(&f), &initial);
+            let change = stress(Mat3::identity() + change) - stress(Mat3::identity() - change);
+            amplitude.dot(&(change * normal)) / (2.0 * h)
         };
+        // Heat does not flow as fast as a wave: ρ c dT = (T ∂τ_vol/∂T) dJ/J.
+        let heating = model.thermal().map_or(0.0, |thermal| {
+            let temperature = crate::ROOM_TEMPERATURE;
+            model.thermoelastic_stress(1.0, temperature).powi(2)
+                / (temperature * model.density() * thermal.heat_capacity.at(temperature))
+        });
         let speeds = model.wave_speeds();
-        for (amplitude, speed) in [(normal, speeds.pressure), (across, speeds.shear)] {
-            let found = (stiffness(&amplitude) / model.density()).sqrt();
+        for (amplitude, heating, speed) in [
+            (normal, heating, speeds.pressure),
+            (across, 0.0, speeds.shear),
+        ] {
+            let found = ((stiffness(&amplitude) + heating) / model.density()).sqrt();
             assert!(
                 (found / speed - 1.0).abs() < 1e-8,
                 "{model:?}: {found} m/s is not {speed}"

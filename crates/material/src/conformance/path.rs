@@ -1,40 +1,54 @@
 //! Consistency along a path: steps, work and dissipation.
 
 use super::kinematics::{Numbers, twisted_path};
-use super::{consistent, first_piola_stress, respond, stored_energy};
-use crate::{History, Material};
+use super::{
+    consistent, evaluate, first_piola_stress, initial_yield_stress, respond, stored_energy,
+    thermoelastic_piola_stress,
+};
+use crate::{History, Kinematics, Material, ROOM_TEMPERATURE};
 use jstsph_tensor::{Mat3, von_mises};
+
+/// Time in which the twisted path is travelled, s: strain rates of 1e4/s.
+const DURATION: f64 = 1e-4;
 
 /// The twisted path in a number of equal steps.
 struct Journey<H> {
     stress: Mat3,
     history: H,
-    /// ∫ P : dF by the trapezoidal rule, J/m³.
+    /// ∫ P : dF by the trapezoidal rule, without the work that becomes heat, J/m³.
     work: f64,
     /// Σ plastic work, J/m³.
     dissipated: f64,
     stored: f64,
 }
 
+/// At constant temperature: the heat of expansion leaves the body.
 fn travel<M: Material>(model: &M, steps: u32) -> Journey<M::History> {
     let mut history = model.initial_history();
-    let mut f = Mat3::identity();
+    let mut now = consistent(&Mat3::identity());
+    now.dt = DURATION / f64::from(steps);
     let mut stress = Mat3::zeros();
+    let mut stored_stress = -thermoelastic_piola_stress(model, &now);
     let (mut work, mut dissipated) = (0.0, 0.0);
     for step in 1..=steps {
-        let next = twisted_path(f64::from(step) / f64::from(steps));
-        let next_stress = first_piola_stress(model, &next, &history);
-        let response = respond(model, &next, &history);
-        work += 0.5 * (stress + next_stress).dot(&(next - f));
+        let f = twisted_path(f64::from(step) / f64::from(steps));
+        let next = Kinematics {
+            dt: now.dt,
+            ..consistent(&f)
+        };
+        stress = first_piola_stress(model, &next, &history);
+        let next_stored_stress = stress - thermoelastic_piola_stress(model, &next);
+        let response = evaluate(model, &next, &history);
+        work += 0.5 * (stored_stress + next_stored_stress).dot(&(f - now.deformation_gradient));
         dissipated += response.plastic_work;
-        (f, stress, history) = (next, next_stress, response.history);
+        (now, stored_stress, history) = (next, next_stored_stress, response.history);
     }
     Journey {
         stress,
         history,
         work,
         dissipated,
-        stored: stored_energy(model, &f, &history),
+        stored: stored_energy(model, &now, &history),
     }
 }
 
@@ -70,9 +84,9 @@ pub(crate) fn work_is_stored_or_dissipated<M: Material>(model: &M) {
         (journey.work - journey.stored - journey.dissipated).abs() / journey.work
     };
     // First order where the material flows, second where it is elastic; the two may have opposite
-    // signs, so the decrease is asserted over three halvings and not over each.
-    let errors = [128, 1024].map(imbalance);
-    assert!(errors[1] <= 0.2 * errors[0], "{model:?}: {errors:?}");
+    // signs, so the decrease is asserted over four halvings and not over each.
+    let errors = [128, 2048].map(imbalance);
+    assert!(errors[1] <= 0.1 * errors[0], "{model:?}: {errors:?}");
     assert!(errors[1] < 2e-4, "{model:?}: {errors:?}");
 }
 
@@ -95,12 +109,14 @@ pub(crate) fn plastic_steps_dissipate_and_end_on_the_yield_surface<M: Material>(
                 <= 1e-15 * (1.0 + history.equivalent_plastic_strain())
         );
 
-        let Some(flow_stress) = model.flow_stress(&response.history) else {
+        let rate = response.plastic_increment / now.dt;
+        let flow_stress = |rate| model.flow_stress(&response.history, rate, ROOM_TEMPERATURE);
+        let Some(limit) = flow_stress(rate) else {
             assert_eq!(response.plastic_increment, 0.0);
             continue;
         };
         let equivalent_stress = von_mises(&response.kirchhoff_stress);
-        let limit = now.jacobian * flow_stress;
+        let limit = now.jacobian * limit;
         if response.plastic_increment > 0.0 {
             yielded += 1;
             // The residual is bounded relative to the trial stress τ_eq + 3 μ Δε_p.
@@ -114,18 +130,21 @@ pub(crate) fn plastic_steps_dissipate_and_end_on_the_yield_surface<M: Material>(
                 (response.plastic_work - equivalent_stress * response.plastic_increment).abs()
                     <= 1e-11 * response.plastic_work
             );
-            // The history is the one that belongs to the stress: the same F from it is elastic.
-            let again = respond(model, &f, &response.history);
-            assert!(
-                (again.kirchhoff_stress - response.kirchhoff_stress).norm()
-                    < 1e-12 * model.shear_modulus()
-            );
-            assert!(again.plastic_increment < 1e-12);
+            // The history is the one that belongs to the stress: the same F from it is elastic, unless
+            // the strength falls as soon as the point stops.
+            if flow_stress(rate) == flow_stress(0.0) {
+                let again = respond(model, &f, &response.history);
+                assert!(
+                    (again.kirchhoff_stress - response.kirchhoff_stress).norm()
+                        < 1e-12 * model.shear_modulus()
+                );
+                assert!(again.plastic_increment < 1e-12);
+            }
         } else {
             assert!(equivalent_stress <= limit * (1.0 + 1e-14));
             assert_eq!(response.history, history);
         }
         history = response.history;
     }
-    assert_eq!(yielded > 20, model.flow_stress(&history).is_some());
+    assert_eq!(yielded > 20, initial_yield_stress(model).is_some());
 }

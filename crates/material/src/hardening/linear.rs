@@ -1,6 +1,6 @@
 //! Linear hardening.
 
-use super::{FlowStress, HardeningLaw, INITIAL_YIELD_STRESS};
+use super::{FlowState, FlowStress, HardeningLaw, INITIAL_YIELD_STRESS};
 use crate::{Key, ParameterError, Range};
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +19,7 @@ const MODULUS: Key = Key {
     unit: "Pa",
     meaning: "slope of the flow stress over the equivalent plastic strain",
     range: Range::NonNegative,
+    optional: false,
 };
 
 impl HardeningLaw for Linear {
@@ -32,11 +33,11 @@ impl HardeningLaw for Linear {
     }
 
     #[inline]
-    fn flow_stress(&self, plastic_strain: f64) -> FlowStress {
-        FlowStress {
-            value: self.initial_yield_stress + self.modulus * plastic_strain,
-            slope: self.modulus,
-        }
+    fn flow_stress(&self, at: &FlowState) -> FlowStress {
+        FlowStress::rate_independent(
+            self.initial_yield_stress + self.modulus * at.plastic_strain,
+            self.modulus,
+        )
     }
 
     /// Copper of Greto & Kulasegaram 2019, Sect. 4.1.

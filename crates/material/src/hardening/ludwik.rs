@@ -1,6 +1,6 @@
 //! Power law of the plastic strain, added to the initial flow stress.
 
-use super::{FlowStress, HardeningLaw, INITIAL_YIELD_STRESS};
+use super::{FlowState, FlowStress, HardeningLaw, INITIAL_YIELD_STRESS};
 use crate::{Key, ParameterError, Range};
 use serde::{Deserialize, Serialize};
 
@@ -23,12 +23,14 @@ const COEFFICIENT: Key = Key {
     unit: "Pa",
     meaning: "growth of the flow stress from eps_p = 0 to 1",
     range: Range::NonNegative,
+    optional: false,
 };
 const EXPONENT: Key = Key {
     name: "exponent",
     unit: "-",
     meaning: "hardening exponent",
     range: Range::PositiveUpTo { most: 1.0 },
+    optional: false,
 };
 
 impl HardeningLaw for Ludwik {
@@ -43,11 +45,11 @@ impl HardeningLaw for Ludwik {
     }
 
     #[inline]
-    fn flow_stress(&self, plastic_strain: f64) -> FlowStress {
-        FlowStress {
-            value: self.initial_yield_stress + self.coefficient * plastic_strain.powf(self.exponent),
-            slope: self.coefficient * self.exponent * plastic_strain.powf(self.exponent - 1.0),
-        }
+    fn flow_stress(&self, at: &FlowState) -> FlowStress {
+        FlowStress::rate_independent(
+            self.initial_yield_stress + self.coefficient * at.plastic_strain.powf(self.exponent),
+            self.coefficient * self.exponent * at.plastic_strain.powf(self.exponent - 1.0),
+        )
     }
 
     fn examples() -> Vec<Self> {

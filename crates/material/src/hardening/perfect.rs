@@ -1,6 +1,6 @@
 //! No hardening.
 
-use super::{FlowStress, HardeningLaw, INITIAL_YIELD_STRESS};
+use super::{FlowState, FlowStress, HardeningLaw, INITIAL_YIELD_STRESS};
 use crate::{Key, ParameterError};
 use serde::{Deserialize, Serialize};
 
@@ -22,11 +22,8 @@ impl HardeningLaw for Perfect {
     }
 
     #[inline]
-    fn flow_stress(&self, _plastic_strain: f64) -> FlowStress {
-        FlowStress {
-            value: self.initial_yield_stress,
-            slope: 0.0,
-        }
+    fn flow_stress(&self, _at: &FlowState) -> FlowStress {
+        FlowStress::rate_independent(self.initial_yield_stress, 0.0)
     }
 
     fn examples() -> Vec<Self> {

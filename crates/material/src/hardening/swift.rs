@@ -1,6 +1,6 @@
 //! Power law of the shifted plastic strain.
 
-use super::{FlowStress, HardeningLaw};
+use super::{FlowState, FlowStress, HardeningLaw};
 use crate::{Key, ParameterError, Range};
 use serde::{Deserialize, Serialize};
 
@@ -21,18 +21,21 @@ const COEFFICIENT: Key = Key {
     unit: "Pa",
     meaning: "flow stress at offset + eps_p = 1",
     range: Range::Positive,
+    optional: false,
 };
 const OFFSET: Key = Key {
     name: "offset",
     unit: "-",
     meaning: "strain added to eps_p; the initial flow stress is coefficient * offset^exponent",
     range: Range::Positive,
+    optional: false,
 };
 const EXPONENT: Key = Key {
     name: "exponent",
     unit: "-",
     meaning: "hardening exponent",
     range: Range::PositiveUpTo { most: 1.0 },
+    optional: false,
 };
 
 impl HardeningLaw for Swift {
@@ -47,13 +50,10 @@ impl HardeningLaw for Swift {
     }
 
     #[inline]
-    fn flow_stress(&self, plastic_strain: f64) -> FlowStress {
-        let strain = self.offset + plastic_strain;
+    fn flow_stress(&self, at: &FlowState) -> FlowStress {
+        let strain = self.offset + at.plastic_strain;
         let value = self.coefficient * strain.powf(self.exponent);
-        FlowStress {
-            value,
-            slope: self.exponent * value / strain,
-        }
+        FlowStress::rate_independent(value, self.exponent * value / strain)
     }
 
     /// Al 1100 of Greto & Kulasegaram 2019, Sect. 4.3.

@@ -1,6 +1,6 @@
 //! A measured curve.
 
-use super::{FlowStress, HardeningLaw};
+use super::{FlowState, FlowStress, HardeningLaw};
 use crate::{Key, ParameterError, Range};
 use serde::{Deserialize, Serialize};
 
@@ -19,12 +19,14 @@ const PLASTIC_STRAIN: Key = Key {
     unit: "-",
     meaning: "equivalent plastic strains of the points, each greater than the one before",
     range: Range::Ascending,
+    optional: false,
 };
 const FLOW_STRESS: Key = Key {
     name: "flow_stress",
     unit: "Pa",
     meaning: "flow stresses of the points, the first greater than 0, never falling; constant outside the table",
     range: Range::Ascending,
+    optional: false,
 };
 
 impl HardeningLaw for Tabulated {
@@ -39,6 +41,7 @@ impl HardeningLaw for Tabulated {
                 found: self.flow_stress.len(),
                 other: PLASTIC_STRAIN.name,
                 expected: self.plastic_strain.len(),
+                least: 1,
             });
         }
         for &strain in &self.plastic_strain {
@@ -82,21 +85,17 @@ impl HardeningLaw for Tabulated {
     }
 
     #[inline]
-    fn flow_stress(&self, plastic_strain: f64) -> FlowStress {
+    fn flow_stress(&self, at: &FlowState) -> FlowStress {
         let (strains, stresses) = (&self.plastic_strain[..], &self.flow_stress[..]);
-        let after = strains.partition_point(|&strain| strain <= plastic_strain);
+        let after = strains.partition_point(|&strain| strain <= at.plastic_strain);
         if after == 0 || after == strains.len() {
-            return FlowStress {
-                value: stresses[after.saturating_sub(1)],
-                slope: 0.0,
-            };
+            return FlowStress::rate_independent(stresses[after.saturating_sub(1)], 0.0);
         }
-        let slope =
-            (stresses[after] - stresses[after - 1]) / (strains[after] - strains[after - 1]);
-        FlowStress {
-            value: stresses[after - 1] + slope * (plastic_strain - strains[after - 1]),
+        let slope = (stresses[after] - stresses[after - 1]) / (strains[after] - strains[after - 1]);
+        FlowStress::rate_independent(
+            stresses[after - 1] + slope * (at.plastic_strain - strains[after - 1]),
             slope,
-        }
+        )
     }
 
     fn examples() -> Vec<Self> {
@@ -113,15 +112,32 @@ mod tests {
 
     #[test]
     fn points_are_met_and_the_ends_are_constant() {
+        let at = |plastic_strain| FlowState {
+            plastic_strain,
+            rate: 0.0,
+            temperature: crate::ROOM_TEMPERATURE,
+        };
         let law = &Tabulated::examples()[0];
-        for (strain, stress) in [(0.0, 0.3e9), (0.05, 0.36e9), (0.125, 0.39e9), (1.0, 0.5e9), (7.0, 0.5e9)] {
-            assert!((law.flow_stress(strain).value - stress).abs() < 1e-6 * stress, "{strain}");
+        for (strain, stress) in [
+            (0.0, 0.3e9),
+            (0.05, 0.36e9),
+            (0.125, 0.39e9),
+            (1.0, 0.5e9),
+            (7.0, 0.5e9),
+        ] {
+            assert!(
+                (law.flow_stress(&at(strain)).value - stress).abs() < 1e-6 * stress,
+                "{strain}"
+            );
         }
         let late = Tabulated {
             plastic_strain: vec![0.1, 0.2],
             flow_stress: vec![1e8, 2e8],
         };
-        assert_eq!(late.flow_stress(0.0), FlowStress { value: 1e8, slope: 0.0 });
+        assert_eq!(
+            late.flow_stress(&at(0.0)),
+            FlowStress::rate_independent(1e8, 0.0)
+        );
     }
 
     #[test]
@@ -137,9 +153,15 @@ mod tests {
         assert_eq!(table(&[0.0, 0.1], &[1e8, 1e8]), Ok(()));
         assert_eq!(table(&[], &[]), Err("flow_stress".into()));
         assert_eq!(table(&[0.0, 0.1], &[1e8]), Err("flow_stress".into()));
-        assert_eq!(table(&[0.0, 0.0], &[1e8, 2e8]), Err("plastic_strain".into()));
+        assert_eq!(
+            table(&[0.0, 0.0], &[1e8, 2e8]),
+            Err("plastic_strain".into())
+        );
         assert_eq!(table(&[0.0, 0.1], &[2e8, 1e8]), Err("flow_stress".into()));
         assert_eq!(table(&[0.0, 0.1], &[0.0, 1e8]), Err("flow_stress".into()));
-        assert_eq!(table(&[0.0, f64::NAN], &[1e8, 2e8]), Err("plastic_strain".into()));
+        assert_eq!(
+            table(&[0.0, f64::NAN], &[1e8, 2e8]),
+            Err("plastic_strain".into())
+        );
     }
 }

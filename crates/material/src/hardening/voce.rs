@@ -1,6 +1,6 @@
 //! Saturating hardening.
 
-use super::{FlowStress, HardeningLaw, INITIAL_YIELD_STRESS};
+use super::{FlowState, FlowStress, HardeningLaw, INITIAL_YIELD_STRESS};
 use crate::{Key, ParameterError, Range};
 use serde::{Deserialize, Serialize};
 
@@ -21,12 +21,14 @@ const SATURATION_STRESS: Key = Key {
     unit: "Pa",
     meaning: "flow stress at large strain; at least initial_yield_stress",
     range: Range::Positive,
+    optional: false,
 };
 const RATE: Key = Key {
     name: "rate",
     unit: "-",
     meaning: "inverse of the strain over which the flow stress saturates",
     range: Range::Positive,
+    optional: false,
 };
 
 impl HardeningLaw for Voce {
@@ -52,13 +54,10 @@ impl HardeningLaw for Voce {
     }
 
     #[inline]
-    fn flow_stress(&self, plastic_strain: f64) -> FlowStress {
-        let below =
-            (self.saturation_stress - self.initial_yield_stress) * (-self.rate * plastic_strain).exp();
-        FlowStress {
-            value: self.saturation_stress - below,
-            slope: self.rate * below,
-        }
+    fn flow_stress(&self, at: &FlowState) -> FlowStress {
+        let below = (self.saturation_stress - self.initial_yield_stress)
+            * (-self.rate * at.plastic_strain).exp();
+        FlowStress::rate_independent(self.saturation_stress - below, self.rate * below)
     }
 
     fn examples() -> Vec<Self> {

@@ -1,15 +1,17 @@
 //! Finite-strain metal plasticity: Hencky elasticity, von Mises yield, isotropic hardening.
 
-use crate::hardening::{self, Hardening};
+use crate::elastic_constants::ElasticConstants;
+use crate::hardening::{self, FlowState, Hardening};
 use crate::logarithmic_strain::{deviatoric_hencky_strain, isochoric_exponential_less_one};
 use crate::material::checked_determinant;
 use crate::parameter::{
-    DENSITY, POISSON_RATIO, Range, YOUNG_MODULUS, bulk_modulus, shear_modulus,
+    DENSITY, POISSON_RATIO_IN_TEMPERATURE, Range, YOUNG_MODULUS_IN_TEMPERATURE,
 };
-use crate::return_map::plastic_increment;
+use crate::return_map::RadialReturn;
+use crate::thermal::THERMAL;
 use crate::{
-    History, Key, Kinematics, Material, MaterialError, ParameterError, PlasticHistory, Response,
-    WaveSpeeds,
+    History, Key, Kinematics, Material, MaterialError, ParameterError, PlasticHistory, Property,
+    Response, Thermal, WaveSpeeds,
 };
 use jstsph_tensor::{Mat3, cofactor, norm_squared};
 use serde::{Deserialize, Serialize};
@@ -18,10 +20,10 @@ use serde::{Deserialize, Serialize};
 ///
 /// ```text
 ///   b_e = F C_p⁻¹ Fᵀ                                                      (A.8)
-///   ε' = ½ dev log b_e,   τ' = 2 μ ε',   τ_vol = κ ln J                   (A.6), (A.9)
-///   τ_eq = √(3/2) |τ'|,   elastic if τ_eq ≤ J σ_Y(ε_p)                    (A.10)
+///   ε' = ½ dev log b_e,   τ' = 2 μ ε',   τ_vol = κ (ln J − 3 α (T − T_ref))  (A.6), (A.9)
+///   τ_eq = √(3/2) |τ'|,   elastic if τ_eq ≤ J σ_Y(ε_p, 0, T)              (A.10)
 ///   ν = τ' / (√(2/3) |τ'|)                                                (A.11)
-///   τ_eq − 3 μ Δε_p = J σ_Y(ε_p + Δε_p)                                   (A.12), (A.13)
+///   τ_eq − 3 μ Δε_p = J σ_Y(ε_p + Δε_p, Δε_p/Δt, T)                       (A.12), (A.13)
 ///   ε' ← ε' − Δε_p ν,   τ' ← τ' (1 − 3 μ Δε_p/τ_eq)                       (A.16), (A.17)
 ///   C_p⁻¹ ← F⁻¹ b_e F⁻ᵀ,   ε_p ← ε_p + Δε_p                               (A.19)
 /// ```
@@ -37,25 +39,54 @@ use serde::{Deserialize, Serialize};
 /// principal values, and all tensors are functions of b_e, evaluated without a spectral decomposition.
 ///
 /// # Limits
-/// Isotropic, rate-independent, no temperature, no kinematic hardening.
+/// Isotropic, no kinematic hardening. T is that of the start of the step. Where μ depends on T, the
+/// heat that goes with elastic distortion, T μ'(T) |ε'|², is left out: metals distort too little
+/// elastically for it to be felt.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct HenckyVonMises {
     /// ρ, kg/m³, positive.
     pub density: f64,
-    /// E, Pa, positive.
-    pub young_modulus: f64,
-    /// ν, between −1 and 0.5.
-    pub poisson_ratio: f64,
-    /// How the flow stress grows with the equivalent plastic strain.
+    /// E, Pa, positive; may depend on the temperature.
+    pub young_modulus: Property,
+    /// ν, between −1 and 0.5; may depend on the temperature.
+    pub poisson_ratio: Property,
+    /// How the flow stress depends on the equivalent plastic strain, its rate and the temperature.
     pub hardening: Hardening,
+    /// Thermal properties; without them the body keeps its temperature and does not expand.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thermal: Option<Thermal>,
+}
+
+impl HenckyVonMises {
+    /// A metal without thermal properties: ρ, kg/m³; E, Pa; ν; hardening.
+    #[must_use]
+    pub fn new(density: f64, young_modulus: f64, poisson_ratio: f64, hardening: Hardening) -> Self {
+        Self {
+            density,
+            young_modulus: young_modulus.into(),
+            poisson_ratio: poisson_ratio.into(),
+            hardening,
+            thermal: None,
+        }
+    }
+
+    #[inline]
+    fn elastic(&self) -> ElasticConstants<'_> {
+        ElasticConstants {
+            young_modulus: &self.young_modulus,
+            poisson_ratio: &self.poisson_ratio,
+            thermal: self.thermal.as_ref(),
+        }
+    }
 }
 
 const HARDENING: Key = Key {
     name: "hardening",
     unit: "-",
-    meaning: "flow stress as a function of the equivalent plastic strain",
+    meaning: "flow stress as a function of the equivalent plastic strain, its rate and the temperature",
     range: Range::OneOf(hardening::LAWS),
+    optional: false,
 };
 
 /// F A Fᵀ of a symmetric A: symmetric bit for bit.
@@ -83,18 +114,25 @@ impl Material for HenckyVonMises {
     const NAME: &'static str = "hencky_von_mises";
     const SUMMARY: &'static str =
         "metals: Hencky elasticity, von Mises yield on the Cauchy stress, isotropic hardening";
-    const KEYS: &'static [Key] = &[DENSITY, YOUNG_MODULUS, POISSON_RATIO, HARDENING];
+    const KEYS: &'static [Key] = &[
+        DENSITY,
+        YOUNG_MODULUS_IN_TEMPERATURE,
+        POISSON_RATIO_IN_TEMPERATURE,
+        HARDENING,
+        THERMAL,
+    ];
     const VOLUMETRIC_SPLIT: bool = true;
 
     type History = PlasticHistory;
 
     fn validate(&self) -> Result<(), ParameterError> {
         DENSITY.check(self.density)?;
-        YOUNG_MODULUS.check(self.young_modulus)?;
-        POISSON_RATIO.check(self.poisson_ratio)?;
+        self.young_modulus.check(&YOUNG_MODULUS_IN_TEMPERATURE)?;
+        self.poisson_ratio.check(&POISSON_RATIO_IN_TEMPERATURE)?;
         self.hardening
             .validate()
-            .map_err(|error| error.within(HARDENING.name))
+            .map_err(|error| error.within(HARDENING.name))?;
+        self.thermal.as_ref().map_or(Ok(()), Thermal::validate)
     }
 
     #[inline]
@@ -104,15 +142,11 @@ impl Material for HenckyVonMises {
 
     #[inline]
     fn shear_modulus(&self) -> f64 {
-        shear_modulus(self.young_modulus, self.poisson_ratio)
+        self.elastic().largest_shear_modulus()
     }
 
     fn wave_speeds(&self) -> WaveSpeeds {
-        WaveSpeeds::from_moduli(
-            self.shear_modulus(),
-            bulk_modulus(self.young_modulus, self.poisson_ratio),
-            self.density,
-        )
+        self.elastic().wave_speeds(self.density)
     }
 
     #[inline]
@@ -128,13 +162,17 @@ impl Material for HenckyVonMises {
     ) -> Result<Response<PlasticHistory>, MaterialError> {
         let f = &now.deformation_gradient;
         let determinant = checked_determinant(now)?;
-        let mu = self.shear_modulus();
+        let mu = self.elastic().shear_modulus(now.temperature);
 
         let b = congruence(f, &old.inverse_plastic_cauchy_green());
         let trial_stress = deviatoric_hencky_strain(&b) * (2.0 * mu);
         let trial_equivalent_stress = (1.5 * norm_squared(&trial_stress)).sqrt();
 
-        let flow_stress = self.hardening.flow_stress(old.equivalent_plastic_strain);
+        let flow_stress = self.hardening.flow_stress(&FlowState {
+            plastic_strain: old.equivalent_plastic_strain,
+            rate: 0.0,
+            temperature: now.temperature,
+        });
         if trial_equivalent_stress <= now.jacobian * flow_stress.value {
             return Ok(Response {
                 kirchhoff_stress: trial_stress,
@@ -151,15 +189,17 @@ impl Material for HenckyVonMises {
             });
         }
 
-        let increment = plastic_increment(
-            trial_equivalent_stress,
-            mu,
-            now.jacobian,
-            old.equivalent_plastic_strain,
-            flow_stress,
-            |strain| self.hardening.flow_stress(strain),
-        )?;
-        let equivalent_stress = trial_equivalent_stress - 3.0 * mu * increment;
+        let increment = RadialReturn {
+            trial_stress: trial_equivalent_stress,
+            shear_modulus: mu,
+            jacobian: now.jacobian,
+            plastic_strain: old.equivalent_plastic_strain,
+            dt: now.dt,
+            temperature: now.temperature,
+        }
+        .plastic_increment(flow_stress, |at| self.hardening.flow_stress(at))?;
+        // Round-off can bring the stress of molten metal below zero.
+        let equivalent_stress = (trial_equivalent_stress - 3.0 * mu * increment).max(0.0);
 
         // b_e shrinks by exp(−2 Δε_p ν), ν = 3/2 τ'/τ_eq, and C_p⁻¹ with it. The change is formed, not
         // the new value, so that round-off is relative to the increment and det C_p⁻¹ stays 1.
@@ -180,17 +220,26 @@ impl Material for HenckyVonMises {
         })
     }
 
-    /// κ ln J.
+    /// κ (ln J − 3 α (T − T_ref)).
     #[inline]
-    fn volumetric_stress(&self, jacobian: f64, _temperature: f64) -> f64 {
-        bulk_modulus(self.young_modulus, self.poisson_ratio) * jacobian.ln()
+    fn volumetric_stress(&self, jacobian: f64, temperature: f64) -> f64 {
+        self.elastic().volumetric_stress(jacobian, temperature)
     }
 
-    /// ½ κ (ln J)².
+    /// ½ κ (ln J)² + 3 α κ T_ref ln J where κ does not depend on T.
     #[inline]
-    fn volumetric_energy(&self, jacobian: f64, _temperature: f64) -> f64 {
-        let log = jacobian.ln();
-        0.5 * bulk_modulus(self.young_modulus, self.poisson_ratio) * log * log
+    fn volumetric_energy(&self, jacobian: f64, temperature: f64) -> f64 {
+        self.elastic().volumetric_energy(jacobian, temperature)
+    }
+
+    /// −3 α κ T where κ does not depend on T.
+    #[inline]
+    fn thermoelastic_stress(&self, jacobian: f64, temperature: f64) -> f64 {
+        self.elastic().thermoelastic_stress(jacobian, temperature)
+    }
+
+    fn thermal(&self) -> Option<&Thermal> {
+        self.thermal.as_ref()
     }
 
     /// μ |dev ε_e|².
@@ -200,28 +249,55 @@ impl Material for HenckyVonMises {
             &now.deformation_gradient,
             &history.inverse_plastic_cauchy_green(),
         );
-        self.shear_modulus() * norm_squared(&deviatoric_hencky_strain(&b))
+        self.elastic().shear_modulus(now.temperature) * norm_squared(&deviatoric_hencky_strain(&b))
     }
 
-    fn flow_stress(&self, history: &PlasticHistory) -> Option<f64> {
-        Some(
-            self.hardening
-                .flow_stress(history.equivalent_plastic_strain)
-                .value,
-        )
+    fn flow_stress(&self, history: &PlasticHistory, rate: f64, temperature: f64) -> Option<f64> {
+        let at = FlowState {
+            plastic_strain: history.equivalent_plastic_strain,
+            rate,
+            temperature,
+        };
+        Some(self.hardening.flow_stress(&at).value)
     }
 
-    /// Copper of the Taylor bar, Greto & Kulasegaram 2019, Sect. 4.1, with every hardening law.
+    /// Copper of the Taylor bar, Greto & Kulasegaram 2019, Sect. 4.1, with every hardening law; with
+    /// thermal properties; with moduli that fall with the temperature.
     fn examples() -> Vec<Self> {
-        Hardening::examples()
-            .into_iter()
-            .map(|hardening| Self {
-                density: 8930.0,
-                young_modulus: 117e9,
-                poisson_ratio: 0.35,
-                hardening,
-            })
-            .collect()
+        let copper = |hardening| Self::new(8930.0, 117e9, 0.35, hardening);
+        let hardening = Hardening::Linear(hardening::Linear {
+            initial_yield_stress: 0.4e9,
+            modulus: 0.1e9,
+        });
+        let warm = Self {
+            thermal: Some(example_thermal()),
+            ..copper(hardening)
+        };
+        let softening = Self {
+            young_modulus: Property::Table {
+                temperatures: vec![293.15, 700.0, 1300.0],
+                values: vec![117e9, 100e9, 60e9],
+            },
+            poisson_ratio: Property::Table {
+                temperatures: vec![293.15, 1300.0],
+                values: vec![0.35, 0.36],
+            },
+            ..warm.clone()
+        };
+        let mut examples: Vec<_> = Hardening::examples().into_iter().map(copper).collect();
+        examples.extend([warm, softening]);
+        examples
+    }
+}
+
+/// Thermal properties of copper at room temperature (CRC Handbook of Chemistry and Physics).
+pub(super) fn example_thermal() -> Thermal {
+    Thermal {
+        heat_capacity: 385.0.into(),
+        conductivity: 401.0.into(),
+        taylor_quinney: 0.9,
+        expansion: 16.5e-6,
+        reference_temperature: crate::ROOM_TEMPERATURE,
     }
 }
 

@@ -2,7 +2,9 @@
 
 use crate::material::checked_determinant;
 use crate::parameter::DENSITY;
-use crate::{Key, Kinematics, Material, MaterialError, ParameterError, Range, Response, WaveSpeeds};
+use crate::{
+    Key, Kinematics, Material, MaterialError, ParameterError, Range, Response, WaveSpeeds,
+};
 use jstsph_tensor::{cofactor, deviator, norm_squared};
 use serde::{Deserialize, Serialize};
 
@@ -34,18 +36,21 @@ const FIRST_COEFFICIENT: Key = Key {
     unit: "Pa",
     meaning: "factor alpha of the first isochoric invariant; shear modulus = 2 alpha + 3 sqrt(3) beta",
     range: Range::Positive,
+    optional: false,
 };
 const SECOND_COEFFICIENT: Key = Key {
     name: "second_coefficient",
     unit: "Pa",
     meaning: "factor beta of the second isochoric invariant to the power 3/2",
     range: Range::NonNegative,
+    optional: false,
 };
 const BULK_MODULUS: Key = Key {
     name: "bulk_modulus",
     unit: "Pa",
     meaning: "bulk modulus of small strains",
     range: Range::Positive,
+    optional: false,
 };
 
 /// Ī₂ to the power 3/2 in the undeformed state.
@@ -55,12 +60,7 @@ impl Material for MooneyRivlin {
     const NAME: &'static str = "mooney_rivlin";
     const SUMMARY: &'static str =
         "elastic, rubber: polyconvex Mooney-Rivlin with isochoric-volumetric split";
-    const KEYS: &'static [Key] = &[
-        DENSITY,
-        FIRST_COEFFICIENT,
-        SECOND_COEFFICIENT,
-        BULK_MODULUS,
-    ];
+    const KEYS: &'static [Key] = &[DENSITY, FIRST_COEFFICIENT, SECOND_COEFFICIENT, BULK_MODULUS];
     const VOLUMETRIC_SPLIT: bool = true;
 
     type History = ();

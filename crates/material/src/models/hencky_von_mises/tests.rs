@@ -11,15 +11,15 @@ const YIELD_STRESS: f64 = 0.4e9;
 const MODULUS: f64 = 0.1e9;
 
 fn copper() -> HenckyVonMises {
-    HenckyVonMises {
-        density: 8930.0,
-        young_modulus: 117e9,
-        poisson_ratio: 0.35,
-        hardening: Hardening::Linear(Linear {
+    HenckyVonMises::new(
+        8930.0,
+        117e9,
+        0.35,
+        Hardening::Linear(Linear {
             initial_yield_stress: YIELD_STRESS,
             modulus: MODULUS,
         }),
-    }
+    )
 }
 
 fn now(f: Mat3, jacobian: f64) -> Kinematics {
@@ -41,7 +41,9 @@ fn by_principal_strains(
     let f = now.deformation_gradient;
     let mu = model.shear_modulus();
     let spectral = symmetric_eigen(&(f * old.inverse_plastic_cauchy_green() * f.transpose()));
-    let mut strain = spectral.values.map(|squared_stretch| 0.5 * squared_stretch.ln());
+    let mut strain = spectral
+        .values
+        .map(|squared_stretch| 0.5 * squared_stretch.ln());
     let mut stress = strain.add_scalar(-strain.mean()) * (2.0 * mu);
     let trial_stress = (1.5 * stress.norm_squared()).sqrt();
     let flow_stress = YIELD_STRESS + MODULUS * old.equivalent_plastic_strain;
@@ -127,7 +129,8 @@ fn simple_tension_has_its_closed_form() {
             )
             .unwrap();
         // τ_eq = 3 μ ε of an isochoric extension; (A.15) for Kirchhoff stresses.
-        let increment = (3.0 * mu * strain - jacobian * YIELD_STRESS) / (3.0 * mu + jacobian * MODULUS);
+        let increment =
+            (3.0 * mu * strain - jacobian * YIELD_STRESS) / (3.0 * mu + jacobian * MODULUS);
         let axial_deviator = 2.0 * mu * (strain - increment);
         assert!((response.plastic_increment - increment).abs() < 1e-14);
         assert!((response.kirchhoff_stress.m11 - axial_deviator).abs() < 1e-13 * mu);
@@ -150,9 +153,11 @@ fn simple_shear_in_one_step_has_its_closed_form() {
             .unwrap();
         // Principal logarithmic strains ± asinh(γ/2), 0.
         let trial_stress = 2.0 * 3f64.sqrt() * mu * (0.5 * shear).asinh();
-        let increment =
-            (trial_stress - jacobian * YIELD_STRESS) / (3.0 * mu + jacobian * MODULUS);
-        assert!((response.plastic_increment - increment).abs() < 1e-14, "{shear}");
+        let increment = (trial_stress - jacobian * YIELD_STRESS) / (3.0 * mu + jacobian * MODULUS);
+        assert!(
+            (response.plastic_increment - increment).abs() < 1e-14,
+            "{shear}"
+        );
         let work = jacobian * (YIELD_STRESS + MODULUS * increment) * increment;
         assert!((response.plastic_work - work).abs() < 1e-14 * mu);
     }
@@ -207,7 +212,11 @@ fn plastic_flow_keeps_its_volume_over_a_hundred_thousand_steps() {
         let strain = history.equivalent_plastic_strain;
         assert!(strain > 20.0, "{}: only {strain}", entry.name);
         // Round-off only: a random walk of steps of a few 1e-16, not their sum of 1e-11.
-        assert!(worst < 1e-12, "{}: |det C_p⁻¹ − 1| reached {worst:e}", entry.name);
+        assert!(
+            worst < 1e-12,
+            "{}: |det C_p⁻¹ − 1| reached {worst:e}",
+            entry.name
+        );
     }
 }
 
@@ -222,7 +231,7 @@ fn wrong_parameters_name_their_dotted_key() {
         model.validate().unwrap_err().to_string(),
         "hardening.linear.initial_yield_stress = -1 is out of range: it must be greater than 0"
     );
-    model.poisson_ratio = 0.5;
+    model.poisson_ratio = 0.5.into();
     assert_eq!(
         model.validate().unwrap_err().to_string(),
         "poisson_ratio = 0.5 is out of range: it must be greater than -1 and less than 0.5"
@@ -233,6 +242,8 @@ fn wrong_parameters_name_their_dotted_key() {
 fn a_history_that_is_no_metric_is_an_error_and_not_a_stress() {
     let model = copper();
     let old = PlasticHistory::new(0.1, &Mat3::from_diagonal(&Vec3::new(1.0, -1.0, -1.0)));
-    let error = model.respond(&now(Mat3::identity(), 1.0), &old).unwrap_err();
+    let error = model
+        .respond(&now(Mat3::identity(), 1.0), &old)
+        .unwrap_err();
     assert!(matches!(error, MaterialError::NotFinite { .. }), "{error}");
 }
