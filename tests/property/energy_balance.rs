@@ -143,7 +143,7 @@ fn balance_of_an_impact_closes() {
 }
 
 /// Sticking and sliding on a moving wall. Friction takes energy and the wall does work, both of which
-/// the books must know.
+/// the books must know: measured 1.6 to 2.5, 2e-5 to 3e-5 at the end.
 #[test]
 fn balance_of_an_impact_with_friction_closes() {
     for (name, scheme) in schemes(false) {
@@ -153,8 +153,8 @@ fn balance_of_an_impact_with_friction_closes() {
         let study = study(&format!("rough impact, {name}"), 4.0, || {
             impact(scheme, 0.2)
         });
-        study.assert_order("balance", 1.0..f64::INFINITY);
-        study.assert_finest_error("balance", 1e-4);
+        study.assert_order("balance", 1.3..f64::INFINITY);
+        study.assert_finest_error("balance", 5e-5);
     }
 }
 

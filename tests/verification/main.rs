@@ -7,3 +7,4 @@ mod sliding_block;
 mod swinging_cube;
 mod swinging_plate;
 mod time_order;
+mod upsetting;
