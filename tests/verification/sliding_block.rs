@@ -69,6 +69,7 @@ fn block(scheme: Scheme, stiffness: f64, v: f64, push: f64, plane: f64) -> Model
             friction: Friction::coulomb(FRICTION),
         },
         velocity: (plane != 0.0).then(|| [plane, 0.0, 0.0].map(Signal::Constant)),
+        heat: None,
     });
     model
 }

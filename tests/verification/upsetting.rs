@@ -38,6 +38,7 @@ fn upset(friction: f64) -> Simulation {
                 friction: Friction::coulomb(friction),
             },
             velocity: Some([0.0, 0.0, speed * way].map(Signal::Constant)),
+            heat: None,
         });
     }
     setup::run(model, 0.15 * HEIGHT / speed)
