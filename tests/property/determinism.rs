@@ -1,6 +1,6 @@
 //! The same model gives the same bits: for any number of threads, and interrupted or not.
 
-use jstsph_contact::{Law, Obstacle, Surface};
+use jstsph_contact::{Friction, Law, Obstacle, Surface};
 use jstsph_geometry::Dimension;
 use jstsph_solver::{Condition, ConditionKind, Model, ModelObstacle, Saved, Scheme, Signal};
 use jstsph_tensor::Vec3;
@@ -21,6 +21,7 @@ fn eventful(intervals: [usize; 3], scheme: Scheme) -> Model {
                 normal: Vec3::z(),
             },
             law: Law::Inelastic { restitution: 0.2 },
+            friction: Friction::coulomb(0.2),
         },
         velocity: Some([0.0, 0.0, 5.0].map(Signal::Constant)),
         heat: None,

@@ -1,6 +1,6 @@
 //! Physics does not know units or axes.
 
-use jstsph_contact::{Law, Obstacle, Surface};
+use jstsph_contact::{Friction, Law, Obstacle, Surface};
 use jstsph_geometry::{Dimension, face_areas};
 use jstsph_material::MaterialSpec;
 use jstsph_material::hardening::{Hardening, Linear};
@@ -62,6 +62,7 @@ fn model_in(units: Units, scheme: Scheme) -> Model {
                 normal: Vec3::z(),
             },
             law: Law::Inelastic { restitution: 0.0 },
+            friction: Friction::default(),
         },
         velocity: None,
         heat: None,

@@ -3,6 +3,8 @@
 mod breathing_disc;
 mod longitudinal_wave;
 mod patch;
+mod sliding_block;
 mod swinging_cube;
 mod swinging_plate;
 mod time_order;
+mod upsetting;

@@ -1,6 +1,6 @@
 //! `[[obstacle]]`: rigid surfaces, their contact law and motion.
 
-use jstsph_contact::{Chain, ContactError, Law, Obstacle, Profile, Surface};
+use jstsph_contact::{Chain, ContactError, Friction, Law, Obstacle, Profile, Surface};
 use jstsph_geometry::Dimension;
 use jstsph_solver::{ModelBody, ModelObstacle, ObstacleHeat, Signal};
 use jstsph_tensor::Vec3;
@@ -48,7 +48,13 @@ pub(crate) fn read_obstacle(
     let surface = read_surface(&mut section, form, dimension, &mut fillets)?;
     let law = read_law(&mut section)?;
     let velocity = read_motion(&mut section, dimension)?;
-    let obstacle = Obstacle { name, surface, law };
+    let friction = Friction::coulomb(section.number_or("friction", 0.0)?);
+    let obstacle = Obstacle {
+        name,
+        surface,
+        law,
+        friction,
+    };
     obstacle
         .validate()
         .map_err(|error| section.problem(form, format!("`{}.{form}`: {error}", section.path())))?;

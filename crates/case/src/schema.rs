@@ -72,7 +72,7 @@ pub const CASE: &[Key] = &[
         "obstacle",
         Tables(OBSTACLE),
         Optional,
-        "rigid obstacles with frictionless contact",
+        "rigid obstacles, with or without friction",
     ),
     key(
         "probe",

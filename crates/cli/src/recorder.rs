@@ -380,6 +380,7 @@ pub(crate) fn energies(simulation: &Simulation) -> Energies {
         hourglass: energies.hourglass + 0.0,
         external: energies.external + 0.0,
         contact: energies.contact + 0.0,
+        friction: energies.friction + 0.0,
         balance: energies.balance(),
     }
 }

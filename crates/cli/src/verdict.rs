@@ -68,12 +68,13 @@ pub(crate) fn verdict(
     );
     let _ = writeln!(
         text,
-        "  energies, J         kinetic {:.4e}, elastic {:.4e}, plastic {:.4e}, numerical {:.4e}, hourglass {:.4e}",
+        "  energies, J         kinetic {:.4e}, elastic {:.4e}, plastic {:.4e}, numerical {:.4e}, hourglass {:.4e}, friction {:.4e}",
         energies.kinetic,
         energies.elastic,
         energies.plastic,
         energies.numerical,
-        energies.hourglass
+        energies.hourglass,
+        energies.friction
     );
     let extremes = &summary.extremes;
     let _ = writeln!(

@@ -4,7 +4,8 @@ use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use jstsph_contact::{
-    CachedGap, Chain, ContactError, ContactStep, Law, Obstacle, Profile, Side, Surface, Wall,
+    CachedGap, Chain, ContactError, ContactStep, Friction, Law, Obstacle, Profile, Side, Surface,
+    Wall,
 };
 use jstsph_tensor::Vec3;
 
@@ -31,6 +32,7 @@ fn die() -> Result<Obstacle, ContactError> {
         name: "die".into(),
         surface: Surface::Profile(Profile::new(vec![lower, upper])?),
         law: Law::default(),
+        friction: Friction::default(),
     })
 }
 

@@ -126,4 +126,12 @@ pub enum ContactError {
         /// Its value.
         value: f64,
     },
+    /// A coefficient of friction out of range.
+    #[error(
+        "the coefficient of friction is {value}, but must be 0 (no friction) or a finite positive number"
+    )]
+    Friction {
+        /// Its value.
+        value: f64,
+    },
 }

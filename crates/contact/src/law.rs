@@ -1,9 +1,9 @@
 //! Contact laws and obstacles.
 
-use crate::{ContactError, Surface};
+use crate::{ContactError, Friction, Surface};
 
-/// What a wall does to the momentum of a particle that runs into it. Frictionless: only the
-/// component along the normal changes, measured relative to the wall.
+/// What a wall does to the momentum of a particle that runs into it. Only the component along the
+/// normal changes, measured relative to the wall; [`Friction`] changes the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Law {
     /// The momentum into the wall is taken away before the particle penetrates: it may go as far
@@ -36,19 +36,22 @@ pub struct Obstacle {
     pub surface: Surface,
     /// What it does to particles.
     pub law: Law,
+    /// Friction along it.
+    pub friction: Friction,
 }
 
 impl Obstacle {
-    /// Checks surface and law.
+    /// Checks surface, law and friction.
     ///
     /// # Errors
-    /// Those of [`Surface::validate`], and a restitution outside 0 to 1.
+    /// Those of [`Surface::validate`] and [`Friction::validate`], and a restitution outside 0 to 1.
     pub fn validate(&self) -> Result<(), ContactError> {
         if let Law::Inelastic { restitution: value } = self.law
             && !(0.0..=1.0).contains(&value)
         {
             return Err(ContactError::Restitution { value });
         }
+        self.friction.validate()?;
         self.surface.validate()
     }
 }

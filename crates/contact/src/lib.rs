@@ -3,13 +3,15 @@
 //! A [`Surface`] answers how far a point is from a rigid wall and which way is out ([`Gap`]); a
 //! [`Law`] says what the wall does to the momentum of a particle; an [`Obstacle`] is both with a
 //! name. Obstacles translate rigidly: the caller says how far and how fast, and everything is
-//! evaluated in the obstacle's own frame. Walls are frictionless.
+//! evaluated in the obstacle's own frame. Walls are frictionless or have Coulomb [`Friction`].
 //!
 //! A particle may touch several walls of one obstacle at once, for instance the two sides of a
 //! channel. A surface therefore has [`Surface::parts`], and each part acts on its own.
 //!
 //! ```
-//! use jstsph_contact::{Chain, ContactStep, Law, Obstacle, Profile, Side, Surface, resolve};
+//! use jstsph_contact::{
+//!     Chain, ContactStep, Friction, Law, Obstacle, Profile, Side, Surface, resolve,
+//! };
 //! use jstsph_tensor::Vec3;
 //!
 //! // A floor that turns upwards into a wall through a fillet of 1 mm; free above and to the left.
@@ -23,6 +25,7 @@
 //!     name: "die".into(),
 //!     surface: Surface::Profile(Profile::new(vec![chain])?),
 //!     law: Law::Inelastic { restitution: 0.0 },
+//!     friction: Friction::coulomb(0.1),
 //! };
 //! die.validate()?;
 //!
@@ -32,7 +35,7 @@
 //! let momentum = Vec3::new(500.0, -2000.0, 0.0);
 //! let rest = Vec3::zeros();
 //! let resolution = resolve(&die, 0, &rest, &rest, &position, &momentum, &step).unwrap();
-//! assert_eq!(resolution.momentum, Vec3::new(500.0, 0.0, 0.0)); // it slides
+//! assert_eq!(resolution.momentum, Vec3::new(300.0, 0.0, 0.0)); // it slides
 //! assert_eq!(resolution.position, None); // and was not moved
 //! # Ok::<(), jstsph_contact::ContactError>(())
 //! ```
@@ -41,6 +44,7 @@ mod cache;
 mod chain;
 mod error;
 mod fillet;
+mod friction;
 mod law;
 mod outline;
 mod profile;
@@ -54,6 +58,7 @@ pub use cache::CachedGap;
 pub use chain::Chain;
 pub use error::ContactError;
 pub use fillet::Side;
+pub use friction::{Exchange, Friction};
 pub use law::{Law, Obstacle};
 pub use profile::Profile;
 pub use resolve::{ContactStep, Resolution, Wall, resolve};

@@ -2,7 +2,7 @@
 
 use jstsph_tensor::Vec3;
 
-use crate::{CachedGap, Gap, Law, Obstacle, Surface};
+use crate::{CachedGap, Exchange, Gap, Law, Obstacle, Surface};
 
 /// What contact has to know about the step and the particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,7 +44,8 @@ pub struct Wall<'a> {
     pub velocity: Vec3,
 }
 
-/// What contact with one part of an obstacle does to one particle; `None` if nothing.
+/// What contact with one part of an obstacle, friction included, does to one particle; `None` if
+/// nothing.
 ///
 /// ```text
 ///   d = gap(x − displacement),    v_n = (p/ρ − velocity) · n
@@ -56,7 +57,7 @@ pub struct Wall<'a> {
 /// After the inelastic law a particle can reach the wall by the end of the step but not pass it. It is
 /// put back on the wall only when it is deeper than `max_penetration`. In a sharp corner of a
 /// [`Chain`](crate::Chain) that points into the wall the law holds for both edges. The components
-/// of the momentum along the wall do not change.
+/// of the momentum along the wall are changed by [`Wall::friction`] alone.
 ///
 /// Source: Greto & Kulasegaram 2019, Sect. 4.3 (reflection); docs/theory.md (inelastic).
 ///
@@ -97,10 +98,19 @@ impl Wall<'_> {
     #[must_use]
     pub fn resolve(&self, x: &Vec3, p: &Vec3, step: &ContactStep) -> Option<Resolution> {
         let mut cache = CachedGap::UNKNOWN;
-        self.resolve_cached(&mut cache, x, p, step)
+        let mut resolution = self.resolve_cached(&mut cache, x, p, step)?;
+        let given = Exchange {
+            normal: resolution.momentum - p,
+            friction: Vec3::zeros(),
+        };
+        if let Some(momentum) = self.friction(&resolution.momentum, &given, step.density) {
+            resolution.momentum = momentum;
+        }
+        Some(resolution)
     }
 
-    /// As [`resolve`], with the same bits, but cheap for a particle far from the wall.
+    /// The contact law of [`resolve`] without friction, with the same bits, but cheap for a
+    /// particle far from the wall.
     ///
     /// # Arguments
     /// * `cache`: belongs to this particle and this part; rewritten when the gap is computed.

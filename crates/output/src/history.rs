@@ -16,7 +16,7 @@ pub struct HistoryColumn {
 }
 
 /// The columns of `history.csv` before the probes, in order.
-pub const HISTORY_COLUMNS: [HistoryColumn; 14] = [
+pub const HISTORY_COLUMNS: [HistoryColumn; 15] = [
     column("time", "s", "simulated time"),
     column("step", "-", "steps done"),
     column("dt", "s", "size of the last time step"),
@@ -43,6 +43,11 @@ pub const HISTORY_COLUMNS: [HistoryColumn; 14] = [
         "work done on the body by loads and prescribed motion",
     ),
     column("contact_energy", "J", "work done on the body by obstacles"),
+    column(
+        "friction_energy",
+        "J",
+        "energy dissipated by friction at obstacles",
+    ),
     column(
         "energy_balance",
         "-",
@@ -129,6 +134,7 @@ impl HistoryWriter {
             e.hourglass,
             e.external,
             e.contact,
+            e.friction,
             e.balance,
             x.equivalent_plastic_strain,
             x.jacobian_min,
@@ -167,6 +173,7 @@ mod tests {
                 hourglass: 8.0,
                 external: 9.0,
                 contact: 10.0,
+                friction: 10.5,
                 balance: 11.0,
             },
             extremes: Extremes {
@@ -191,6 +198,7 @@ mod tests {
             ("kinetic_energy", 4.0),
             ("plastic_energy", 6.0),
             ("contact_energy", 10.0),
+            ("friction_energy", 10.5),
             ("energy_balance", 11.0),
             ("jacobian_max", 14.0),
             ("base_radius", 15.0),

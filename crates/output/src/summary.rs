@@ -47,6 +47,9 @@ pub struct Energies {
     /// Work done on the body by obstacles.
     #[serde(deserialize_with = "null_as_nan")]
     pub contact: f64,
+    /// Energy dissipated by friction at obstacles; zero in files of versions without friction.
+    #[serde(default, deserialize_with = "null_as_nan")]
+    pub friction: f64,
     /// Defect of the energy balance as a fraction of the largest energy (not in J); zero for an exact
     /// balance.
     #[serde(deserialize_with = "null_as_nan")]
@@ -210,6 +213,7 @@ mod tests {
                 "hourglass",
                 "external",
                 "contact",
+                "friction",
                 "balance",
                 "extremes",
                 "equivalent_plastic_strain",

@@ -1,7 +1,7 @@
 //! Cost of a whole step of the shipped problems, on one thread and on two.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use jstsph_contact::{Law, Obstacle, Surface};
+use jstsph_contact::{Friction, Law, Obstacle, Surface};
 use jstsph_geometry::{Axis, Body, Dimension, Lattice, Shape, Spacing, build_body};
 use jstsph_material::{MaterialSpec, library};
 use jstsph_solver::{
@@ -49,6 +49,7 @@ fn wall(normal: Vec3) -> ModelObstacle {
                 normal,
             },
             law: Law::Inelastic { restitution: 0.0 },
+            friction: Friction::default(),
         },
         velocity: None,
         heat: None,

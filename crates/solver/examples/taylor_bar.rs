@@ -3,7 +3,7 @@
 //! `cargo run --release -p jstsph-solver --example taylor_bar -- [per_radius] [cfl] [particles|bonds]`
 #![allow(clippy::print_stdout, reason = "an example talks to its reader")]
 
-use jstsph_contact::{Law, Obstacle, Surface};
+use jstsph_contact::{Friction, Law, Obstacle, Surface};
 use jstsph_geometry::{Axis, Dimension, Lattice, Shape, Spacing, build_body, face_nodes};
 use jstsph_material::library;
 use jstsph_solver::{
@@ -55,6 +55,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                     normal: Vec3::z(),
                 },
                 law: Law::Inelastic { restitution: 0.0 },
+                friction: Friction::default(),
             },
             velocity: None,
             heat: None,

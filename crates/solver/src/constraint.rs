@@ -1,13 +1,13 @@
 //! What fixes momenta from outside: prescribed velocities and contact with rigid obstacles.
 
-use jstsph_contact::{CachedGap, ContactStep, Surface, Wall};
+use jstsph_contact::{CachedGap, ContactStep, Exchange, Surface, Wall};
 use jstsph_tensor::Vec3;
 
 use crate::force::vector;
 use crate::model::{Condition, ConditionKind, Model, ModelObstacle};
 use crate::parallel;
 use crate::reference::Reference;
-use crate::state::{ContactSlot, Ledger, State};
+use crate::state::{ContactSlot, Impulse, Ledger, State};
 
 /// Gap below which a particle touches a wall, as a fraction of the spacing: a node that lies on
 /// the wall must count as touching, or it keeps an inward momentum that its strains feel.
@@ -117,6 +117,7 @@ impl Obstacles {
         let slot = ContactSlot {
             cache: CachedGap::default(),
             impulse: Vec3::zeros(),
+            given: Exchange::default(),
             corrections: 0,
         };
         vec![slot; particles * self.parts.len()]
@@ -150,13 +151,13 @@ impl Obstacles {
 
     /// Corrects the momentum (and, where a particle is deep in a wall, the position) of every
     /// particle. `time` and `dt` are the beginning and length of the travel that these momenta
-    /// are going to make; impulses are booked with `factor`.
+    /// are going to make.
     pub(crate) fn apply(
         &self,
         reference: &Reference,
         time: f64,
         dt: f64,
-        factor: f64,
+        stage: Stage,
         state: &mut State,
         ledger: &mut Ledger,
     ) {
@@ -184,26 +185,128 @@ impl Obstacles {
                 &mut ledger.impulse[range.clone()],
             );
             parallel::for_each_with_group(particles, contact, slots, |a, x, p, impulse, group| {
-                for (slot, &(o, part)) in group.iter_mut().zip(&self.parts) {
-                    let wall = Wall {
-                        obstacle: &self.obstacles[o].obstacle,
-                        part,
-                        displacement: self.displacement[o],
-                        velocity: velocities[o],
-                    };
-                    if let Some(resolution) = wall.resolve_cached(&mut slot.cache, x, p, &step) {
-                        let change = resolution.momentum - *p;
-                        *p = resolution.momentum;
-                        impulse.contact += change * factor;
-                        slot.impulse += change * (factor * volume[a]);
-                        if let Some(position) = resolution.position {
-                            *x = position;
-                            slot.corrections += 1;
-                        }
+                let mut particle = Particle {
+                    x,
+                    p,
+                    impulse,
+                    volume: volume[a],
+                    stage,
+                };
+                let mut rubbed = false;
+                for (slot, part) in group.iter_mut().zip(&self.parts) {
+                    if stage.begins() {
+                        slot.given = Exchange::default();
+                    }
+                    let wall = self.wall(*part, &velocities);
+                    let normal = particle.meet(&wall, slot, &step);
+                    rubbed |= particle.rub(&wall, slot, normal, &step);
+                }
+                // Friction along one wall may point into another: none is entered in the end.
+                if rubbed {
+                    for (slot, part) in group.iter_mut().zip(&self.parts) {
+                        particle.meet(&self.wall(*part, &velocities), slot, &step);
                     }
                 }
             });
         }
+    }
+
+    fn wall(&self, (o, part): (usize, usize), velocities: &[Vec3]) -> Wall<'_> {
+        Wall {
+            obstacle: &self.obstacles[o].obstacle,
+            part,
+            displacement: self.displacement[o],
+            velocity: velocities[o],
+        }
+    }
+}
+
+/// A particle that walls act on, and its books.
+struct Particle<'a> {
+    x: &'a mut Vec3,
+    p: &'a mut Vec3,
+    impulse: &'a mut Impulse,
+    volume: f64,
+    stage: Stage,
+}
+
+impl Particle<'_> {
+    /// Applies the contact law and returns its impulse per unit volume.
+    #[inline]
+    fn meet(&mut self, wall: &Wall<'_>, slot: &mut ContactSlot, step: &ContactStep) -> Vec3 {
+        let Some(resolution) = wall.resolve_cached(&mut slot.cache, self.x, self.p, step) else {
+            return Vec3::zeros();
+        };
+        let change = resolution.momentum - *self.p;
+        *self.p = resolution.momentum;
+        let factor = self.stage.factor();
+        self.impulse.contact += change * factor;
+        slot.impulse += change * (factor * self.volume);
+        slot.given.normal += change * factor;
+        if let Some(position) = resolution.position {
+            *self.x = position;
+            slot.corrections += 1;
+        }
+        change
+    }
+
+    /// Applies friction after an impulse `normal` of the contact law; whether it changed anything.
+    #[inline]
+    fn rub(
+        &mut self,
+        wall: &Wall<'_>,
+        slot: &mut ContactSlot,
+        normal: Vec3,
+        step: &ContactStep,
+    ) -> bool {
+        let given = if self.stage == Stage::Average {
+            // The contact law has already added its part to the impulses of the step.
+            slot.given
+        } else {
+            Exchange {
+                normal,
+                friction: Vec3::zeros(),
+            }
+        };
+        let Some(after) = wall.friction(self.p, &given, step.density) else {
+            return false;
+        };
+        let change = after - *self.p;
+        *self.p = after;
+        let factor = self.stage.factor();
+        self.impulse.friction += change * factor;
+        self.impulse.friction_at_walls += change.dot(&wall.velocity) * factor;
+        slot.impulse += change * (factor * self.volume);
+        slot.given.friction += change * factor;
+        true
+    }
+}
+
+/// Which momenta of a step constraints act on, hence which part of the step their impulses are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stage {
+    /// Those after a kick of the leapfrog.
+    Whole,
+    /// u* of a Runge-Kutta step: half of the impulse remains in the average.
+    First,
+    /// u** of a Runge-Kutta step.
+    Second,
+    /// uⁿ⁺¹, the average. Friction may use what the impulses of the whole step leave of it: a
+    /// particle that has come to rest in both stages is at rest, and not at half its velocity.
+    Average,
+}
+
+impl Stage {
+    /// Part of an impulse that is felt at the end of the step.
+    pub(crate) fn factor(self) -> f64 {
+        match self {
+            Self::Whole | Self::Average => 1.0,
+            Self::First | Self::Second => 0.5,
+        }
+    }
+
+    fn begins(self) -> bool {
+        matches!(self, Self::Whole | Self::First)
     }
 }
 

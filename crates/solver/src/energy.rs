@@ -22,8 +22,11 @@ pub struct Energies {
     pub hourglass: f64,
     /// Work of loads and prescribed velocities so far.
     pub external: f64,
-    /// Work of obstacles so far (negative: they took energy).
+    /// Work of obstacles so far (negative: they took energy): of the contact law, and of friction
+    /// at the velocity of the obstacle.
     pub contact: f64,
+    /// Energy dissipated by friction at obstacles so far.
+    pub friction: f64,
     /// Heat content above that of the start.
     pub thermal: f64,
     /// Heat made of plastic, viscous and friction work so far: counted in `thermal` and where it
@@ -37,10 +40,16 @@ pub struct Energies {
 
 impl Energies {
     /// Energy that appeared from nowhere, J: kinetic + elastic + plastic + numerical + hourglass
-    /// + thermal − heat_generated − heat_supplied − external − contact − initial.
+    /// + friction + thermal − heat_generated − heat_supplied − external − contact − initial.
     #[must_use]
     pub fn error(&self) -> f64 {
-        self.kinetic + self.elastic + self.plastic + self.numerical + self.hourglass + self.thermal
+        self.kinetic
+            + self.elastic
+            + self.plastic
+            + self.numerical
+            + self.hourglass
+            + self.friction
+            + self.thermal
             - self.heat_generated
             - self.heat_supplied
             - self.external
@@ -59,6 +68,7 @@ impl Energies {
             self.hourglass,
             self.external,
             self.contact,
+            self.friction,
             self.thermal,
             self.heat_generated,
             self.heat_supplied,
@@ -150,6 +160,7 @@ impl Simulation {
             },
             external: work(|work| work.external),
             contact: work(|work| work.contact),
+            friction: work(|work| work.friction),
             thermal: self
                 .heat
                 .as_ref()

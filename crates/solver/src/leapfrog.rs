@@ -1,7 +1,6 @@
 //! Staggered leapfrog: momentum at half steps, everything else at whole steps.
 
-use jstsph_tensor::Vec3;
-
+use crate::constraint::Stage;
 use crate::model::Formulation;
 use crate::simulation::{Simulation, work_of};
 use crate::state::{Impulse, Ledger, State, Work};
@@ -109,7 +108,7 @@ impl Simulation {
                 *impulse = Impulse {
                     numerical: work.dissipation[a] * duration,
                     external: work.external_force[a] * duration,
-                    contact: Vec3::zeros(),
+                    ..Impulse::default()
                 };
                 *p += impulse.numerical + impulse.external - work.internal_force[a] * duration;
             },
@@ -129,19 +128,21 @@ impl Simulation {
             ledger,
         );
         self.obstacles
-            .apply(reference, time, travel, 1.0, state, ledger);
+            .apply(reference, time, travel, Stage::Whole, state, ledger);
 
         let Ledger {
             momentum_before,
             impulse,
             work: total,
             last_work,
+            friction_heat,
             ..
         } = ledger;
         let momentum = &state.momentum;
-        parallel::for_each_pair(total, last_work, |a, total, last| {
+        parallel::for_each_triple(total, last_work, friction_heat, |a, total, last, heat| {
             let mean = (momentum_before[a] + momentum[a]) * (0.5 / reference.density[a]);
             let done = work_of(&impulse[a], &mean);
+            *heat = done.friction;
             match kick {
                 // Half of twice the work is booked with the next kick: all of it by then.
                 Kick::Opening => *last = done.plus(done, 1.0),

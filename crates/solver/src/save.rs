@@ -36,7 +36,7 @@ fn flat_tensors(values: &[Mat3]) -> Vec<f64> {
 fn flat_work(values: &[Work]) -> Vec<f64> {
     values
         .iter()
-        .flat_map(|w| [w.numerical, w.external, w.contact])
+        .flat_map(|w| [w.numerical, w.external, w.contact, w.friction])
         .collect()
 }
 
@@ -126,12 +126,13 @@ impl<'a> Arrays<'a> {
     }
 
     fn work(&self, name: &str, out: &mut [Work]) -> Result<(), SolverError> {
-        let flat = self.get(name, 3 * out.len())?;
-        for (w, c) in out.iter_mut().zip(flat.chunks_exact(3)) {
+        let flat = self.get(name, 4 * out.len())?;
+        for (w, c) in out.iter_mut().zip(flat.chunks_exact(4)) {
             *w = Work {
                 numerical: c[0],
                 external: c[1],
                 contact: c[2],
+                friction: c[3],
             };
         }
         Ok(())
@@ -194,6 +195,17 @@ impl Simulation {
                     .collect(),
             ),
             (
+                "contact_given".to_owned(),
+                flat_vectors(
+                    &ledger
+                        .contact
+                        .iter()
+                        .flat_map(|s| [s.given.normal, s.given.friction])
+                        .collect::<Vec<_>>(),
+                ),
+            ),
+            ("friction_heat".to_owned(), ledger.friction_heat.clone()),
+            (
                 "contact_corrections".to_owned(),
                 ledger
                     .contact
@@ -251,6 +263,12 @@ impl Simulation {
         arrays.vectors("obstacle_displacement", &mut self.obstacles.displacement)?;
         let mut impulses = vec![Vec3::zeros(); ledger.contact.len()];
         arrays.vectors("contact_impulse", &mut impulses)?;
+        let mut given = vec![Vec3::zeros(); 2 * ledger.contact.len()];
+        arrays.vectors("contact_given", &mut given)?;
+        for (slot, given) in ledger.contact.iter_mut().zip(given.chunks_exact(2)) {
+            [slot.given.normal, slot.given.friction] = [given[0], given[1]];
+        }
+        arrays.scalars("friction_heat", &mut ledger.friction_heat)?;
         let corrections = arrays.get("contact_corrections", ledger.contact.len())?;
         for ((slot, impulse), count) in ledger.contact.iter_mut().zip(impulses).zip(corrections) {
             slot.impulse = impulse;

@@ -3,7 +3,7 @@
 use jstsph_material::MaterialBlock;
 use jstsph_tensor::Vec3;
 
-use crate::constraint::{Obstacles, Prescribed};
+use crate::constraint::{Obstacles, Prescribed, Stage};
 use crate::error::Place;
 use crate::eulerian::CurrentKernels;
 use crate::force::Loads;
@@ -89,6 +89,7 @@ impl Simulation {
             impulse: vec![Impulse::default(); particles],
             work: vec![Work::default(); particles],
             last_work: vec![Work::default(); particles],
+            friction_heat: vec![0.0; particles],
             plastic_dissipation: vec![0.0; points],
             contact: obstacles.new_slots(particles),
             condition_impulse: vec![Vec3::zeros(); prescribed.len()],
@@ -359,17 +360,18 @@ impl Simulation {
     }
 
     /// Prescribed velocities at `time` and contact over the travel of `dt` that follows.
-    pub(crate) fn constrain(&mut self, time: f64, dt: f64, factor: f64) {
+    pub(crate) fn constrain(&mut self, time: f64, dt: f64, stage: Stage) {
         let Self {
             reference,
             state,
             ledger,
             ..
         } = self;
+        let factor = stage.factor();
         self.prescribed
             .apply(reference, time, factor, &mut state.momentum, ledger);
         self.obstacles
-            .apply(reference, time, dt, factor, state, ledger);
+            .apply(reference, time, dt, stage, state, ledger);
     }
 
     /// Sets the clock; `end` exactly when the step was cut there.
@@ -480,6 +482,7 @@ pub(crate) fn work_of(impulse: &Impulse, velocity: &Vec3) -> Work {
     Work {
         numerical: impulse.numerical.dot(velocity),
         external: impulse.external.dot(velocity),
-        contact: impulse.contact.dot(velocity),
+        contact: impulse.contact.dot(velocity) + impulse.friction_at_walls,
+        friction: impulse.friction_at_walls - impulse.friction.dot(velocity),
     }
 }

@@ -1,6 +1,6 @@
 //! The unknowns, the buffers of a step, and the books kept beside them.
 
-use jstsph_contact::CachedGap;
+use jstsph_contact::{CachedGap, Exchange};
 use jstsph_material::ROOM_TEMPERATURE;
 use jstsph_tensor::{Mat3, Vec3};
 
@@ -118,7 +118,12 @@ impl Workspace {
 pub(crate) struct Impulse {
     pub(crate) numerical: Vec3,
     pub(crate) external: Vec3,
+    /// Of the contact law.
     pub(crate) contact: Vec3,
+    /// Of friction.
+    pub(crate) friction: Vec3,
+    /// Work of the friction impulses at the velocities of their walls, J/m³.
+    pub(crate) friction_at_walls: f64,
 }
 
 /// Work done on one particle per unit reference volume, J/m³, by cause.
@@ -126,7 +131,10 @@ pub(crate) struct Impulse {
 pub(crate) struct Work {
     pub(crate) numerical: f64,
     pub(crate) external: f64,
+    /// Of the contact law, and of friction at the velocity of the wall.
     pub(crate) contact: f64,
+    /// Dissipated by friction: positive when energy is lost.
+    pub(crate) friction: f64,
 }
 
 impl Work {
@@ -135,6 +143,7 @@ impl Work {
             numerical: self.numerical + factor * other.numerical,
             external: self.external + factor * other.external,
             contact: self.contact + factor * other.contact,
+            friction: self.friction + factor * other.friction,
         }
     }
 }
@@ -146,6 +155,9 @@ pub(crate) struct ContactSlot {
     pub(crate) cache: CachedGap,
     /// Impulse on the particle so far, N s.
     pub(crate) impulse: Vec3,
+    /// Impulses on the particle in the last kick (leapfrog) or step (TVD-RK2), per unit reference
+    /// volume.
+    pub(crate) given: Exchange,
     /// How often the particle was put back onto the surface.
     pub(crate) corrections: u32,
 }
@@ -161,6 +173,10 @@ pub(crate) struct Ledger {
     pub(crate) work: Vec<Work>,
     /// Work of the last kick (leapfrog), half of which is in `work`.
     pub(crate) last_work: Vec<Work>,
+    /// Energy that friction has taken from each particle in the last kick (leapfrog) or step
+    /// (TVD-RK2), J per m³ of reference volume: what a heat source would be made of. The sum over
+    /// all kicks is the friction energy of the balance.
+    pub(crate) friction_heat: Vec<f64>,
     /// Plastic dissipation of the points so far, J/m³.
     pub(crate) plastic_dissipation: Vec<f64>,
     /// Contact slots, particle by particle, one per obstacle part.

@@ -1,6 +1,6 @@
 //! Small models and random numbers that the tests of several modules share.
 
-use jstsph_contact::{Law, Obstacle, Surface};
+use jstsph_contact::{Friction, Law, Obstacle, Surface};
 use jstsph_geometry::{Dimension, Lattice, Shape, Spacing, build_body};
 use jstsph_material::models::Hencky;
 use jstsph_material::{MaterialSpec, library};
@@ -125,6 +125,7 @@ pub(crate) fn impact(nodes: [usize; 3], scheme: Scheme) -> Model {
                 normal: Vec3::y(),
             },
             law: Law::Inelastic { restitution: 0.0 },
+            friction: Friction::default(),
         },
         velocity: None,
         heat: None,

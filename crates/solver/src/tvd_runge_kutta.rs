@@ -1,8 +1,9 @@
 //! Two-stage TVD Runge-Kutta (3.16), the paper's integrator.
 
+use crate::constraint::Stage;
 use crate::model::Formulation;
 use crate::simulation::{Simulation, work_of};
-use crate::state::{Impulse, State};
+use crate::state::{Impulse, Ledger, State};
 use crate::strain::constrain;
 use crate::{SolverError, parallel, strain};
 
@@ -28,16 +29,16 @@ pub(crate) fn step(simulation: &mut Simulation, end: f64) -> Result<(), SolverEr
     simulation.forces(|state, a| state.position[a]);
     simulation.stage(dt);
     simulation.move_obstacles(time, dt);
-    simulation.constrain(time + dt, dt, 0.5);
+    simulation.constrain(time + dt, dt, Stage::First);
     simulation.evaluate_stress(dt)?;
 
     simulation.velocity_gradient();
     simulation.stage_two_forces(dt);
     simulation.stage(dt);
-    simulation.constrain(time + dt, dt, 0.5);
+    simulation.constrain(time + dt, dt, Stage::Second);
 
     simulation.average_with_start();
-    simulation.constrain(time + dt, dt, 1.0);
+    simulation.constrain(time + dt, dt, Stage::Average);
     simulation.advance_clock(dt, end);
     simulation.evaluate_stress(dt)?;
     simulation.commit_history();
@@ -157,10 +158,17 @@ impl Simulation {
             ..
         } = self;
         let Some(start) = start else { return };
-        let impulse = &ledger.impulse;
-        parallel::for_each(&mut ledger.work, |a, total| {
+        let Ledger {
+            impulse,
+            work,
+            friction_heat,
+            ..
+        } = ledger;
+        parallel::for_each_pair(work, friction_heat, |a, total, heat| {
             let mean = (start.momentum[a] + state.momentum[a]) * (0.5 / reference.density[a]);
-            *total = total.plus(work_of(&impulse[a], &mean), 1.0);
+            let done = work_of(&impulse[a], &mean);
+            *total = total.plus(done, 1.0);
+            *heat = done.friction;
         });
     }
 }

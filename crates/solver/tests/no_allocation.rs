@@ -2,7 +2,7 @@
 
 use std::alloc::System;
 
-use jstsph_contact::{Law, Obstacle, Surface};
+use jstsph_contact::{Friction, Law, Obstacle, Surface};
 use jstsph_geometry::{Dimension, Lattice, Shape, Spacing, build_body};
 use jstsph_material::library;
 use jstsph_solver::{
@@ -68,6 +68,7 @@ fn model(quadrature: Quadrature, integrator: Integrator, formulation: Formulatio
                     normal: Vec3::y(),
                 },
                 law: Law::Inelastic { restitution: 0.0 },
+                friction: Friction::coulomb(0.2),
             },
             velocity: Some([0.0, 1.0, 0.0].map(Signal::Constant)),
         }],

@@ -143,6 +143,12 @@ pub const OBSTACLE: &[Key] = &[
         "rebound over approach velocity, for the inelastic law",
     ),
     key(
+        "friction",
+        Number(Measure::NUMBER, Limit::NotNegative),
+        Default("0"),
+        "Coulomb coefficient: largest tangential over normal impulse; 0 slides freely",
+    ),
+    key(
         "allowed_overlap",
         Number(Measure::LENGTH, Limit::NotNegative),
         Derived("1e-6 of the spacing"),

@@ -45,7 +45,14 @@ struct History<'a> {
 
 impl History<'_> {
     fn energies(&self) -> Result<LinePlot, CliError> {
-        let stored = ["kinetic", "elastic", "plastic", "numerical", "hourglass"];
+        let stored = [
+            "kinetic",
+            "elastic",
+            "plastic",
+            "numerical",
+            "hourglass",
+            "friction",
+        ];
         let columns = stored
             .map(|kind| self.column(&format!("{kind}_energy")))
             .into_iter()
@@ -389,10 +396,10 @@ line = { from = [0, 0.003], to = [0.004, 0.003], count = 3, field = "pressure" }
             let series = plot.series.iter().find(|series| series.label == label);
             series.unwrap().points[2].1
         };
-        // Five kinds that start at 3 to 7, work that starts at 8 and 9.
-        assert_eq!(last("sum"), 25.0 + 5.0 * 2.0);
-        assert_eq!(last("initial + work"), 25.0 + 17.0 + 2.0 * 2.0);
-        assert_eq!(plot.series.len(), 7);
+        // Six kinds that start at 3 to 7 and 10, work that starts at 8 and 9.
+        assert_eq!(last("sum"), 35.0 + 6.0 * 2.0);
+        assert_eq!(last("initial + work"), 35.0 + 17.0 + 2.0 * 2.0);
+        assert_eq!(plot.series.len(), 8);
     }
 
     #[test]

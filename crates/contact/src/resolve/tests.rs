@@ -18,6 +18,7 @@ fn obstacle(surface: Surface, law: Law) -> Obstacle {
         name: "wall".into(),
         surface,
         law,
+        friction: crate::Friction::default(),
     }
 }
 
