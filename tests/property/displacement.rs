@@ -1,7 +1,7 @@
 //! The displacement formulation and mass scaling: what must hold beside the common properties.
 
 use jstsph_geometry::Dimension;
-use jstsph_solver::{Formulation, Scheme, Simulation, Stabilisation};
+use jstsph_solver::{Formulation, Scheme, Stabilisation};
 use jstsph_tensor::Vec3;
 use jstsph_tests::setup;
 

@@ -34,15 +34,15 @@ impl Units {
 /// A copper block under traction that hits a wall, in the given units.
 fn model_in(units: Units, scheme: Scheme) -> Model {
     let Units { length, mass, .. } = units;
-    let material = MaterialSpec::HenckyVonMises(HenckyVonMises {
-        density: 8930.0 * mass / length.powi(3),
-        young_modulus: 117e9 * units.pressure(),
-        poisson_ratio: 0.35,
-        hardening: Hardening::Linear(Linear {
+    let material = MaterialSpec::HenckyVonMises(HenckyVonMises::new(
+        8930.0 * mass / length.powi(3),
+        117e9 * units.pressure(),
+        0.35,
+        Hardening::Linear(Linear {
             initial_yield_stress: 0.4e9 * units.pressure(),
             modulus: 0.1e9 * units.pressure(),
         }),
-    });
+    ));
     let body = setup::block(
         [0.1, 0.08, 0.08].map(|l| l * length),
         [5, 4, 4],

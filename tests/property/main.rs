@@ -4,5 +4,6 @@ mod conservation;
 mod determinism;
 mod displacement;
 mod energy_balance;
+mod heat;
 mod invariance;
 mod tumbling;

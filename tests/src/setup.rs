@@ -1,9 +1,9 @@
 //! Models built in code: boxes, materials, schemes, conditions.
 
 use jstsph_geometry::{Body, Dimension, Lattice, Selection, Shape, Spacing, build_body, select};
-use jstsph_material::MaterialSpec;
 use jstsph_material::hardening::{Hardening, Linear};
-use jstsph_material::models::{HenckyVonMises, NeoHookean};
+use jstsph_material::models::{Hencky, HenckyVonMises, NeoHookean};
+use jstsph_material::{MaterialSpec, Property, Thermal};
 use jstsph_solver::{
     Condition, ConditionKind, Formulation, Integrator, Model, ModelBody, Quadrature, Scheme,
     Signal, Simulation, SmoothingReference, Stabilisation, Viscosity, Weights,
@@ -101,15 +101,31 @@ pub fn rubber(poisson_ratio: f64) -> MaterialSpec {
 /// Copper of Greto & Kulasegaram 2019, Sect. 4.1: yields at a strain of 0.34 %.
 #[must_use]
 pub fn copper() -> MaterialSpec {
-    MaterialSpec::HenckyVonMises(HenckyVonMises {
-        density: 8930.0,
-        young_modulus: 117e9,
-        poisson_ratio: 0.35,
-        hardening: Hardening::Linear(Linear {
+    MaterialSpec::HenckyVonMises(HenckyVonMises::new(
+        8930.0,
+        117e9,
+        0.35,
+        Hardening::Linear(Linear {
             initial_yield_stress: 0.4e9,
             modulus: 0.1e9,
         }),
-    })
+    ))
+}
+
+/// An elastic solid that conducts heat: the moduli of a soft rubber, so that sound takes as long as
+/// heat, ρ c = 1.1 MJ/(m³ K), and a diffusivity of 10 m²/s; `expansion` in 1/K.
+#[must_use]
+pub fn conductor(expansion: f64) -> Hencky {
+    Hencky {
+        thermal: Some(Thermal {
+            heat_capacity: Property::Constant(1000.0),
+            conductivity: Property::Constant(1.1e7),
+            taylor_quinney: 0.9,
+            expansion,
+            reference_temperature: jstsph_material::ROOM_TEMPERATURE,
+        }),
+        ..Hencky::new(1100.0, 17e6, 0.3)
+    }
 }
 
 /// One body that starts with `velocity(X)`, free of conditions.

@@ -1,6 +1,7 @@
 //! Does the scheme solve the equations? Observed orders of convergence against exact solutions.
 
 mod breathing_disc;
+mod conduction;
 mod longitudinal_wave;
 mod patch;
 mod sliding_block;

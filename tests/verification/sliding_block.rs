@@ -47,11 +47,7 @@ fn block(scheme: Scheme, stiffness: f64, v: f64, push: f64, plane: f64) -> Model
         [NODES - 1, 4, 1],
         Dimension::PlaneStrain,
     );
-    let material = MaterialSpec::Hencky(Hencky {
-        density: DENSITY,
-        young_modulus: 2e9 * stiffness,
-        poisson_ratio: 0.2,
-    });
+    let material = MaterialSpec::Hencky(Hencky::new(DENSITY, 2e9 * stiffness, 0.2));
     let mut model = setup::free_body(body, material, |_| Vec3::new(v, 0.0, 0.0), scheme);
     model.bodies[0].body_force = Some([
         ramped(push * GRAVITY),

@@ -256,12 +256,18 @@ impl HeatProcess {
                 } else {
                     &[]
                 };
+                let friction = if settings.friction_heating {
+                    &context.friction_heat[range.clone()]
+                } else {
+                    &[]
+                };
                 let generated = &mut self.generated[range.clone()];
                 parallel::for_each_pair(source, generated, |a, source, generated| {
                     let mut heat = share * body.shares.mean(a, |q| plastic[q]);
                     if let Some(rate) = viscous.get(a) {
                         heat += rate * context.dt;
                     }
+                    heat += friction.get(a).copied().unwrap_or(0.0);
                     *source = heat;
                     *generated += heat;
                 });
@@ -475,6 +481,8 @@ pub(crate) struct HeatStep<'a> {
     pub(crate) reference: &'a Reference,
     pub(crate) materials: &'a [MaterialBlock],
     pub(crate) quadrature: Quadrature,
+    /// Energy that friction took from the particles in the last kick, J/m³.
+    pub(crate) friction_heat: &'a [f64],
     /// Displacements of the obstacles, m.
     pub(crate) displacement: &'a [Vec3],
     /// End and length of the step, s.

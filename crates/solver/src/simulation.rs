@@ -336,6 +336,7 @@ impl Simulation {
             reference: &self.reference,
             materials: &self.materials,
             quadrature: self.scheme.quadrature,
+            friction_heat: &self.ledger.friction_heat,
             displacement: &self.obstacles.displacement,
             time: self.time,
             dt,

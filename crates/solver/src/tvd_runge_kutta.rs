@@ -42,9 +42,8 @@ pub(crate) fn step(simulation: &mut Simulation, end: f64) -> Result<(), SolverEr
     simulation.advance_clock(dt, end);
     simulation.evaluate_stress(dt)?;
     simulation.commit_history();
-    simulation.advance_heat(dt)?;
     simulation.close_books();
-    Ok(())
+    simulation.advance_heat(dt)
 }
 
 impl Simulation {
