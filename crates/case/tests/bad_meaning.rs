@@ -33,6 +33,15 @@ fn a_body_in_an_obstacle_is_refused_and_one_that_touches_is_not() {
 }
 
 #[test]
+fn friction_is_not_negative() {
+    expect(
+        "name = \"floor\"",
+        "name = \"floor\"\nfriction = -0.1",
+        &["`obstacle.floor.friction`", "negative"],
+    );
+}
+
+#[test]
 fn names_must_be_unique_and_simple() {
     expect(
         "name = \"billet\"",

@@ -59,6 +59,7 @@ profile = { chains = [
 [[obstacle]]
 plane = { point = [2, 0], normal = [-2, 0] }
 law = "reflection"
+friction = 0.15
 velocity = { x = { expression = "-t" } }
 [[probe]]
 name = "length"
@@ -165,6 +166,8 @@ fn every_table_reaches_the_model() {
     assert_eq!(die.obstacle.law, Law::Inelastic { restitution: 0.0 });
     let (name, law) = (wall.obstacle.name.as_str(), wall.obstacle.law);
     assert_eq!((name, law), ("obstacle-1", Law::Reflection));
+    let coefficients = [die, wall].map(|o| o.obstacle.friction.coefficient);
+    assert_eq!(coefficients, [0.0, 0.15]);
     let moving = wall.velocity.as_ref().expect("moving");
     assert_eq!(moving[0].at(2.0, &Vec3::zeros()), -2.0);
 
