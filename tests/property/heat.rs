@@ -200,9 +200,8 @@ fn hot_plate_heats_what_touches_it() {
             "{name}: {:.6e} J, not {expected:.6e} J",
             energies.heat_supplied
         );
-        assert!(
-            (energies.thermal / energies.heat_supplied - 1.0).abs() < 1e-11,
-            "{name}"
-        );
+        // Round-off of 293 K against the 1e-3 K of one step.
+        let relative = energies.thermal / energies.heat_supplied - 1.0;
+        assert!(relative.abs() < 1e-8, "{name}: {relative:.1e}");
     }
 }

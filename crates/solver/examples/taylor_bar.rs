@@ -60,6 +60,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             velocity: None,
             heat: None,
         }],
+        heat: None,
         scheme: Scheme {
             quadrature: if bonds {
                 Quadrature::Bonds

@@ -8,7 +8,7 @@ use jstsph_material::library;
 use jstsph_solver::{
     Biharmonic, Condition, ConditionKind, Formulation, Integrator, Jst, Laplacian, Model,
     ModelBody, ModelObstacle, Quadrature, Scheme, Signal, Simulation, SmoothingReference,
-    Stabilisation, Weights,
+    Stabilisation, Viscosity, Weights,
 };
 use jstsph_sph::Kernel;
 use jstsph_tensor::Vec3;
@@ -37,7 +37,6 @@ fn model(quadrature: Quadrature, integrator: Integrator, formulation: Formulatio
             body,
             material: library()[0].spec.clone(),
             body_force: Some([0.0, -9.81, 0.0].map(Signal::Constant)),
-            heat: None,
         }],
         conditions: vec![
             Condition {
@@ -71,7 +70,9 @@ fn model(quadrature: Quadrature, integrator: Integrator, formulation: Formulatio
                 friction: Friction::coulomb(0.2),
             },
             velocity: Some([0.0, 1.0, 0.0].map(Signal::Constant)),
+            heat: None,
         }],
+        heat: None,
         scheme: Scheme {
             quadrature,
             kernel: Kernel::QuinticSpline,
@@ -94,6 +95,10 @@ fn model(quadrature: Quadrature, integrator: Integrator, formulation: Formulatio
                 }),
                 upwind: 0.05,
                 hourglass: 0.01,
+                viscosity: Some(Viscosity {
+                    linear: 0.1,
+                    quadratic: 0.2,
+                }),
             },
             projection: true,
             inertia_scale: 1.0,
