@@ -96,27 +96,42 @@ impl HenckyVonMises {
     }
 
     /// D at the end of a step in which the point flowed.
+    #[inline(never)]
     fn damage_after(
         &self,
+        damage: &Damage,
         now: &Kinematics,
         old: &PlasticHistory,
         increment: f64,
         equivalent_stress: f64,
     ) -> f64 {
-        match &self.damage {
-            Some(damage) if equivalent_stress > 0.0 => damage.after(
-                old.damage,
-                increment,
-                if now.dt > 0.0 {
-                    increment / now.dt
-                } else {
-                    0.0
-                },
-                self.volumetric_stress(now.jacobian, now.temperature) / equivalent_stress,
-                now.temperature,
-            ),
-            _ => old.damage,
+        if equivalent_stress <= 0.0 {
+            return old.damage;
         }
+        let rate = if now.dt > 0.0 {
+            increment / now.dt
+        } else {
+            0.0
+        };
+        let triaxiality = self.volumetric_stress(now.jacobian, now.temperature) / equivalent_stress;
+        damage.after(old.damage, increment, rate, triaxiality, now.temperature)
+    }
+
+    /// The volumetric stress of a model with thermal properties, apart from the usual case.
+    #[inline(never)]
+    fn warm_volumetric_stress(&self, jacobian: f64, temperature: f64) -> f64 {
+        match self.state_equation() {
+            None => self.elastic().volumetric_stress(jacobian, temperature),
+            Some(law) => law.volumetric_stress(jacobian, temperature),
+        }
+    }
+
+    /// # Errors
+    /// [`MaterialError::Compressed`] outside the range of the equation of state.
+    #[inline(never)]
+    fn check_compression(&self, jacobian: f64) -> Result<(), MaterialError> {
+        self.state_equation()
+            .map_or(Ok(()), |law| law.check(jacobian))
     }
 
     #[inline]
@@ -228,8 +243,8 @@ impl Material for HenckyVonMises {
         let f = &now.deformation_gradient;
         let determinant = checked_determinant(now)?;
         let mu = self.elastic().shear_modulus(now.temperature);
-        if let Some(law) = self.state_equation() {
-            law.check(now.jacobian)?;
+        if self.equation_of_state.is_some() {
+            self.check_compression(now.jacobian)?;
         }
 
         let b = congruence(f, &old.inverse_plastic_cauchy_green());
@@ -277,6 +292,11 @@ impl Material for HenckyVonMises {
             (0.0, 0.5 * trial_equivalent_stress * increment)
         };
 
+        let damage = match &self.damage {
+            None => old.damage,
+            Some(law) => self.damage_after(law, now, old, increment, equivalent_stress),
+        };
+
         // b_e shrinks by exp(−2 Δε_p ν), ν = 3/2 τ'/τ_eq, and C_p⁻¹ with it. The change is formed, not
         // the new value, so that round-off is relative to the increment and det C_p⁻¹ stays 1.
         let direction = trial_stress * (-3.0 * increment / trial_equivalent_stress);
@@ -293,16 +313,16 @@ impl Material for HenckyVonMises {
                 old.equivalent_plastic_strain + increment,
                 &inverse_plastic_cauchy_green,
             )
-            .with_damage(self.damage_after(now, old, increment, equivalent_stress)),
+            .with_damage(damage),
         })
     }
 
     /// κ (ln J − 3 α (T − T_ref)).
     #[inline]
     fn volumetric_stress(&self, jacobian: f64, temperature: f64) -> f64 {
-        match self.state_equation() {
-            None => self.elastic().volumetric_stress(jacobian, temperature),
-            Some(law) => law.volumetric_stress(jacobian, temperature),
+        match self.thermal {
+            None => self.elastic().bulk_modulus(temperature) * jacobian.ln(),
+            Some(_) => self.warm_volumetric_stress(jacobian, temperature),
         }
     }
 
