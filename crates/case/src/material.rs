@@ -360,7 +360,7 @@ hardening = { johnson_cook = { a = "420 MPa", b = "465 MPa", n = 0.5, c = 0.08, 
             (
                 "\"400 degC\"",
                 "\"20 degC\"",
-                "material.al.hencky_von_mises.young_modulus.temperatures",
+                "young_modulus.temperatures = 293.15 must be greater than 293.15",
             ),
             (
                 "\"50 GPa\"",

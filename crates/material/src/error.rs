@@ -46,6 +46,14 @@ pub enum ParameterError {
         /// Why, or what the bound is.
         reason: &'static str,
     },
+    /// A key that makes no sense without another, or with what another says.
+    #[error("{key} needs {what}")]
+    Needs {
+        /// Dotted path of the key.
+        key: String,
+        /// What it needs.
+        what: &'static str,
+    },
 }
 
 impl ParameterError {
@@ -53,17 +61,20 @@ impl ParameterError {
     #[must_use]
     pub fn key(&self) -> &str {
         match self {
-            Self::OutOfRange { key, .. } | Self::Length { key, .. } | Self::Order { key, .. } => {
-                key
-            }
+            Self::OutOfRange { key, .. }
+            | Self::Length { key, .. }
+            | Self::Order { key, .. }
+            | Self::Needs { key, .. } => key,
         }
     }
 
     /// The same error with the key placed inside the table `prefix`.
     #[must_use]
     pub(crate) fn within(mut self, prefix: &str) -> Self {
-        let (Self::OutOfRange { key, .. } | Self::Length { key, .. } | Self::Order { key, .. }) =
-            &mut self;
+        let (Self::OutOfRange { key, .. }
+        | Self::Length { key, .. }
+        | Self::Order { key, .. }
+        | Self::Needs { key, .. }) = &mut self;
         *key = format!("{prefix}.{key}");
         self
     }
@@ -90,6 +101,16 @@ pub enum MaterialError {
         jacobian: f64,
         /// det F.
         determinant: f64,
+    },
+    /// Compression beyond what the equation of state describes.
+    #[error(
+        "compressed to J = {jacobian}, below {limit}, the end of the equation of state; reduce the time step"
+    )]
+    Compressed {
+        /// The independent Jacobian J.
+        jacobian: f64,
+        /// Smallest J of the equation of state.
+        limit: f64,
     },
     /// The plastic return did not reach the yield surface.
     #[error(

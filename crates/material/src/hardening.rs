@@ -152,5 +152,7 @@ const INITIAL_YIELD_STRESS: Key = Key {
     optional: false,
 };
 
+pub(crate) use johnson_cook::{check_melting, homologous_temperature};
+
 #[cfg(test)]
 mod conformance;

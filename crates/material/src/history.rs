@@ -23,6 +23,11 @@ pub trait History: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// ε_p, accumulated; zero for elastic models.
     fn equivalent_plastic_strain(&self) -> f64;
 
+    /// D, from 0 to 1, where the metal has failed; zero for models without damage.
+    fn damage(&self) -> f64 {
+        0.0
+    }
+
     /// C_p⁻¹; the identity for elastic models.
     fn inverse_plastic_cauchy_green(&self) -> Mat3;
 }
@@ -45,23 +50,26 @@ impl History for () {
 }
 
 /// History of isotropic finite-strain plasticity, Greto & Kulasegaram 2019, Appendix A: C_p⁻¹ and
-/// ε_p. Seven numbers, so that one point fits a cache line.
+/// ε_p, and the damage. Eight numbers: one point fills a cache line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlasticHistory {
     /// ε_p, accumulated.
     pub equivalent_plastic_strain: f64,
     /// C_p⁻¹ as 11, 22, 33, 12, 13, 23.
     components: [f64; 6],
+    /// D, from 0 to 1, where the metal has failed.
+    pub damage: f64,
 }
 
 impl PlasticHistory {
-    /// No plastic deformation yet: C_p⁻¹ = 1, ε_p = 0.
+    /// No plastic deformation yet: C_p⁻¹ = 1, ε_p = 0, D = 0.
     pub const INITIAL: Self = Self {
         equivalent_plastic_strain: 0.0,
         components: [1.0, 1.0, 1.0, 0.0, 0.0, 0.0],
+        damage: 0.0,
     };
 
-    /// From ε_p and C_p⁻¹, of which the upper triangle is read.
+    /// From ε_p and C_p⁻¹, of which the upper triangle is read; undamaged.
     #[inline]
     #[must_use]
     pub fn new(equivalent_plastic_strain: f64, inverse_plastic_cauchy_green: &Mat3) -> Self {
@@ -69,7 +77,15 @@ impl PlasticHistory {
         Self {
             equivalent_plastic_strain,
             components: [c.m11, c.m22, c.m33, c.m12, c.m13, c.m23],
+            damage: 0.0,
         }
+    }
+
+    /// The same with a damage D.
+    #[inline]
+    #[must_use]
+    pub fn with_damage(self, damage: f64) -> Self {
+        Self { damage, ..self }
     }
 }
 
@@ -82,11 +98,13 @@ impl History for PlasticHistory {
         "inverse_plastic_cauchy_green_12",
         "inverse_plastic_cauchy_green_13",
         "inverse_plastic_cauchy_green_23",
+        "damage",
     ];
 
     fn write(&self, columns: &mut [f64]) {
         columns[0] = self.equivalent_plastic_strain;
         columns[1..7].copy_from_slice(&self.components);
+        columns[7] = self.damage;
     }
 
     fn read(columns: &[f64]) -> Self {
@@ -95,12 +113,18 @@ impl History for PlasticHistory {
         Self {
             equivalent_plastic_strain: columns[0],
             components,
+            damage: columns[7],
         }
     }
 
     #[inline]
     fn equivalent_plastic_strain(&self) -> f64 {
         self.equivalent_plastic_strain
+    }
+
+    #[inline]
+    fn damage(&self) -> f64 {
+        self.damage
     }
 
     #[inline]
@@ -117,10 +141,10 @@ mod tests {
     #[test]
     fn plastic_history_survives_a_round_trip_and_lists_its_columns_in_order() {
         let c = Mat3::new(1.1, 0.4, 0.5, 0.4, 1.2, 0.6, 0.5, 0.6, 1.3);
-        let history = PlasticHistory::new(0.7, &c);
+        let history = PlasticHistory::new(0.7, &c).with_damage(0.2);
         let mut columns = [0.0; PlasticHistory::FIELDS.len()];
         history.write(&mut columns);
-        assert_eq!(columns, [0.7, 1.1, 1.2, 1.3, 0.4, 0.5, 0.6]);
+        assert_eq!(columns, [0.7, 1.1, 1.2, 1.3, 0.4, 0.5, 0.6, 0.2]);
         assert_eq!(PlasticHistory::read(&columns), history);
         assert_eq!(history.inverse_plastic_cauchy_green(), c);
     }

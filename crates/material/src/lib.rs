@@ -39,7 +39,9 @@
 struct Readme;
 
 mod block;
+mod damage;
 mod elastic_constants;
+mod equation_of_state;
 mod error;
 mod history;
 mod library;
@@ -56,6 +58,8 @@ pub mod models;
 mod conformance;
 
 pub use block::{Block, BlockReader, BlockVisitor};
+pub use damage::{DAMAGE_LAWS, Damage, JohnsonCookDamage};
+pub use equation_of_state::{EQUATIONS_OF_STATE, EquationOfState, MieGrueneisen};
 pub use error::{MaterialError, ParameterError};
 pub use history::{History, PlasticHistory};
 pub use library::{NamedMaterial, library};

@@ -28,7 +28,8 @@ pub struct Response<H> {
     pub kirchhoff_stress: Mat3,
     /// Δε_p ≥ 0.
     pub plastic_increment: f64,
-    /// τ_eq Δε_p at the end of the step, J per m³ of reference volume.
+    /// τ_eq Δε_p at the end of the step, J per m³ of reference volume; where the metal has lost its
+    /// strength, molten or failed, the elastic energy ½ τ_eq,trial Δε_p it gives up.
     pub plastic_work: f64,
     /// The history to commit if the step is accepted.
     pub history: H,

@@ -30,18 +30,7 @@ impl Property {
             Self::Table {
                 temperatures,
                 values,
-            } => {
-                let next = temperatures.partition_point(|t| *t <= temperature);
-                if next == 0 {
-                    values[0]
-                } else if next == temperatures.len() {
-                    values[next - 1]
-                } else {
-                    let (t0, t1) = (temperatures[next - 1], temperatures[next]);
-                    let (v0, v1) = (values[next - 1], values[next]);
-                    v0 + (v1 - v0) * (temperature - t0) / (t1 - t0)
-                }
-            }
+            } => interpolated(temperatures, values, temperature),
         }
     }
 
@@ -163,6 +152,21 @@ impl Property {
             Self::Constant(value) => *value,
             Self::Table { values, .. } => values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
         }
+    }
+}
+
+/// Apart, so that constants cost the stress loop no more than a comparison.
+#[inline(never)]
+fn interpolated(temperatures: &[f64], values: &[f64], temperature: f64) -> f64 {
+    let next = temperatures.partition_point(|t| *t <= temperature);
+    if next == 0 {
+        values[0]
+    } else if next == temperatures.len() {
+        values[next - 1]
+    } else {
+        let (t0, t1) = (temperatures[next - 1], temperatures[next]);
+        let (v0, v1) = (values[next - 1], values[next]);
+        v0 + (v1 - v0) * (temperature - t0) / (t1 - t0)
     }
 }
 

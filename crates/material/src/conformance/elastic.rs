@@ -48,11 +48,12 @@ pub(crate) fn stress_is_the_derivative_of_the_energy<M: Material>(model: &M) {
             let stress = first_piola_stress(model, &at(f), &initial)
                 - thermoelastic_piola_stress(model, &at(f));
             // Energies carry the round-off of F, 1e-16 of stiffness × strain, divided here by h;
-            // truncation is h² of the stiffness.
+            // truncation is h⁴ of the stiffness, h² where a derivative jumps.
             let h = 1e-5;
-            let difference = (stored_energy(model, &at(f + direction * h), &initial)
-                - stored_energy(model, &at(f - direction * h), &initial))
-                / (2.0 * h);
+            let energy =
+                |step: f64| stored_energy(model, &at(f + direction * (step * h)), &initial);
+            let difference =
+                (8.0 * (energy(1.0) - energy(-1.0)) - (energy(2.0) - energy(-2.0))) / (12.0 * h);
             let scale = model.wave_speeds().pressure.powi(2) * model.density();
             assert!(
                 (stress.dot(&direction) - difference).abs() < scale * (1e-8 * amplitude + h * h),
@@ -68,11 +69,12 @@ pub(crate) fn volumetric_stress_is_the_derivative_of_the_volumetric_energy<M: Ma
     for temperature in TEMPERATURES {
         for jacobian in [0.5, 0.9, 0.999, 1.0, 1.001, 1.2, 2.5] {
             let h = 1e-5;
-            let energy = |jacobian| model.volumetric_energy(jacobian, temperature);
-            let slope = (energy(jacobian + h) - energy(jacobian - h)) / (2.0 * h);
+            let energy = |step| model.volumetric_energy(jacobian + step * h, temperature);
+            let slope =
+                (8.0 * (energy(1.0) - energy(-1.0)) - (energy(2.0) - energy(-2.0))) / (12.0 * h);
             let stored = model.volumetric_stress(jacobian, temperature)
                 - model.thermoelastic_stress(jacobian, temperature);
-            // Truncation h² and round-off 1e-16/h, both 1e-10, with factors up to ten.
+            // Round-off 1e-16/h = 1e-11, with factors up to a hundred; truncation is h⁴.
             assert!(
                 (stored - jacobian * slope).abs() < 1e-8 * scale,
                 "{model:?} at J = {jacobian}, {temperature} K"
@@ -194,7 +196,7 @@ pub(crate) fn wave_speeds_are_those_of_the_acoustic_tensor<M: Material>(model: &
 pub(crate) fn equal_and_nearly_equal_stretches_give_continuous_stress<M: Material>(model: &M) {
     let initial = model.initial_history();
     let mut numbers = Numbers::new();
-    for stretch in [0.7, 0.999, 1.0, 1.003, 1.4] {
+    for stretch in [0.8, 0.999, 1.0, 1.003, 1.4] {
         for other in [stretch, 1.1] {
             let (q, r) = (numbers.rotation(), numbers.rotation());
             let stretched =

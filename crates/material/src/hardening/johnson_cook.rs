@@ -152,7 +152,8 @@ impl HardeningLaw for JohnsonCook {
         check_melting(self.melting_temperature, self.reference_temperature)
     }
 
-    #[inline]
+    // Out of the way of the laws that are a few operations.
+    #[inline(never)]
     fn flow_stress(&self, at: &FlowState) -> FlowStress {
         let hot = homologous_temperature(
             at.temperature,

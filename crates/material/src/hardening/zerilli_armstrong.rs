@@ -106,7 +106,8 @@ impl HardeningLaw for ZerilliArmstrong {
         N.check(self.n)
     }
 
-    #[inline]
+    // Out of the way of the laws that are a few operations.
+    #[inline(never)]
     fn flow_stress(&self, at: &FlowState) -> FlowStress {
         let sensitivity = self.c4 * at.temperature;
         let (rate, rate_slope) = power(1.0, sensitivity, at.rate);

@@ -1,7 +1,9 @@
 //! Finite-strain metal plasticity: Hencky elasticity, von Mises yield, isotropic hardening.
 
+use crate::damage::DAMAGE;
 use crate::elastic_constants::ElasticConstants;
-use crate::hardening::{self, FlowState, Hardening};
+use crate::equation_of_state::{EQUATION_OF_STATE, StateEquation};
+use crate::hardening::{self, FlowState, FlowStress, Hardening};
 use crate::logarithmic_strain::{deviatoric_hencky_strain, isochoric_exponential_less_one};
 use crate::material::checked_determinant;
 use crate::parameter::{
@@ -10,8 +12,8 @@ use crate::parameter::{
 use crate::return_map::RadialReturn;
 use crate::thermal::THERMAL;
 use crate::{
-    History, Key, Kinematics, Material, MaterialError, ParameterError, PlasticHistory, Property,
-    Response, Thermal, WaveSpeeds,
+    Damage, EquationOfState, History, JohnsonCookDamage, Key, Kinematics, Material, MaterialError,
+    MieGrueneisen, ParameterError, PlasticHistory, Property, Response, Thermal, WaveSpeeds,
 };
 use jstsph_tensor::{Mat3, cofactor, norm_squared};
 use serde::{Deserialize, Serialize};
@@ -56,6 +58,13 @@ pub struct HenckyVonMises {
     /// Thermal properties; without them the body keeps its temperature and does not expand.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thermal: Option<Thermal>,
+    /// How much plastic strain the metal bears; without it any. A point whose damage reaches 1 has
+    /// neither shear strength nor, to the caller's care, tension from the next step on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub damage: Option<Damage>,
+    /// Volumetric stress at strong compression, in place of κ (ln J − 3 α (T − T_ref)).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub equation_of_state: Option<EquationOfState>,
 }
 
 impl HenckyVonMises {
@@ -68,7 +77,61 @@ impl HenckyVonMises {
             poisson_ratio: poisson_ratio.into(),
             hardening,
             thermal: None,
+            damage: None,
+            equation_of_state: None,
         }
+    }
+
+    /// The equation of state, if there is one; it has a thermal part beside it.
+    #[inline]
+    fn state_equation(&self) -> Option<StateEquation<'_>> {
+        let law = self.equation_of_state.as_ref()?;
+        Some(law.of(self.density, self.thermal.as_ref()?))
+    }
+
+    /// Whether damage has taken the strength.
+    #[inline]
+    fn has_failed(&self, history: &PlasticHistory) -> bool {
+        self.damage.is_some() && history.damage >= 1.0
+    }
+
+    /// D at the end of a step in which the point flowed.
+    #[inline(never)]
+    fn damage_after(
+        &self,
+        damage: &Damage,
+        now: &Kinematics,
+        old: &PlasticHistory,
+        increment: f64,
+        equivalent_stress: f64,
+    ) -> f64 {
+        if equivalent_stress <= 0.0 {
+            return old.damage;
+        }
+        let rate = if now.dt > 0.0 {
+            increment / now.dt
+        } else {
+            0.0
+        };
+        let triaxiality = self.volumetric_stress(now.jacobian, now.temperature) / equivalent_stress;
+        damage.after(old.damage, increment, rate, triaxiality, now.temperature)
+    }
+
+    /// The volumetric stress of a model with thermal properties, apart from the usual case.
+    #[inline(never)]
+    fn warm_volumetric_stress(&self, jacobian: f64, temperature: f64) -> f64 {
+        match self.state_equation() {
+            None => self.elastic().volumetric_stress(jacobian, temperature),
+            Some(law) => law.volumetric_stress(jacobian, temperature),
+        }
+    }
+
+    /// # Errors
+    /// [`MaterialError::Compressed`] outside the range of the equation of state.
+    #[inline(never)]
+    fn check_compression(&self, jacobian: f64) -> Result<(), MaterialError> {
+        self.state_equation()
+            .map_or(Ok(()), |law| law.check(jacobian))
     }
 
     #[inline]
@@ -120,6 +183,8 @@ impl Material for HenckyVonMises {
         POISSON_RATIO_IN_TEMPERATURE,
         HARDENING,
         THERMAL,
+        DAMAGE,
+        EQUATION_OF_STATE,
     ];
     const VOLUMETRIC_SPLIT: bool = true;
 
@@ -132,7 +197,17 @@ impl Material for HenckyVonMises {
         self.hardening
             .validate()
             .map_err(|error| error.within(HARDENING.name))?;
-        self.thermal.as_ref().map_or(Ok(()), Thermal::validate)
+        self.thermal.as_ref().map_or(Ok(()), Thermal::validate)?;
+        if let Some(damage) = &self.damage {
+            damage
+                .validate()
+                .map_err(|error| error.within(DAMAGE.name))?;
+        }
+        if let Some(law) = &self.equation_of_state {
+            law.validate(self.thermal.as_ref())
+                .map_err(|error| error.within(EQUATION_OF_STATE.name))?;
+        }
+        Ok(())
     }
 
     #[inline]
@@ -146,7 +221,12 @@ impl Material for HenckyVonMises {
     }
 
     fn wave_speeds(&self) -> WaveSpeeds {
-        self.elastic().wave_speeds(self.density)
+        match self.state_equation() {
+            None => self.elastic().wave_speeds(self.density),
+            Some(law) => {
+                WaveSpeeds::from_moduli(self.shear_modulus(), law.bulk_modulus(), self.density)
+            }
+        }
     }
 
     #[inline]
@@ -163,16 +243,23 @@ impl Material for HenckyVonMises {
         let f = &now.deformation_gradient;
         let determinant = checked_determinant(now)?;
         let mu = self.elastic().shear_modulus(now.temperature);
+        if self.equation_of_state.is_some() {
+            self.check_compression(now.jacobian)?;
+        }
 
         let b = congruence(f, &old.inverse_plastic_cauchy_green());
         let trial_stress = deviatoric_hencky_strain(&b) * (2.0 * mu);
         let trial_equivalent_stress = (1.5 * norm_squared(&trial_stress)).sqrt();
 
-        let flow_stress = self.hardening.flow_stress(&FlowState {
-            plastic_strain: old.equivalent_plastic_strain,
-            rate: 0.0,
-            temperature: now.temperature,
-        });
+        let flow_stress = if self.has_failed(old) {
+            FlowStress::rate_independent(0.0, 0.0)
+        } else {
+            self.hardening.flow_stress(&FlowState {
+                plastic_strain: old.equivalent_plastic_strain,
+                rate: 0.0,
+                temperature: now.temperature,
+            })
+        };
         if trial_equivalent_stress <= now.jacobian * flow_stress.value {
             return Ok(Response {
                 kirchhoff_stress: trial_stress,
@@ -198,8 +285,17 @@ impl Material for HenckyVonMises {
             temperature: now.temperature,
         }
         .plastic_increment(flow_stress, |at| self.hardening.flow_stress(at))?;
-        // Round-off can bring the stress of molten metal below zero.
-        let equivalent_stress = (trial_equivalent_stress - 3.0 * mu * increment).max(0.0);
+        let (equivalent_stress, plastic_work) = if flow_stress.value > 0.0 {
+            let stress = trial_equivalent_stress - 3.0 * mu * increment;
+            (stress, stress * increment)
+        } else {
+            (0.0, 0.5 * trial_equivalent_stress * increment)
+        };
+
+        let damage = match &self.damage {
+            None => old.damage,
+            Some(law) => self.damage_after(law, now, old, increment, equivalent_stress),
+        };
 
         // b_e shrinks by exp(−2 Δε_p ν), ν = 3/2 τ'/τ_eq, and C_p⁻¹ with it. The change is formed, not
         // the new value, so that round-off is relative to the increment and det C_p⁻¹ stays 1.
@@ -212,34 +308,49 @@ impl Material for HenckyVonMises {
         Ok(Response {
             kirchhoff_stress: trial_stress * (equivalent_stress / trial_equivalent_stress),
             plastic_increment: increment,
-            plastic_work: equivalent_stress * increment,
+            plastic_work,
             history: PlasticHistory::new(
                 old.equivalent_plastic_strain + increment,
                 &inverse_plastic_cauchy_green,
-            ),
+            )
+            .with_damage(damage),
         })
     }
 
     /// κ (ln J − 3 α (T − T_ref)).
     #[inline]
     fn volumetric_stress(&self, jacobian: f64, temperature: f64) -> f64 {
-        self.elastic().volumetric_stress(jacobian, temperature)
+        match self.thermal {
+            None => self.elastic().bulk_modulus(temperature) * jacobian.ln(),
+            Some(_) => self.warm_volumetric_stress(jacobian, temperature),
+        }
     }
 
     /// ½ κ (ln J)² + 3 α κ T_ref ln J where κ does not depend on T.
     #[inline]
     fn volumetric_energy(&self, jacobian: f64, temperature: f64) -> f64 {
-        self.elastic().volumetric_energy(jacobian, temperature)
+        match self.state_equation() {
+            None => self.elastic().volumetric_energy(jacobian, temperature),
+            Some(law) => law.volumetric_energy(jacobian),
+        }
     }
 
     /// −3 α κ T where κ does not depend on T.
     #[inline]
     fn thermoelastic_stress(&self, jacobian: f64, temperature: f64) -> f64 {
-        self.elastic().thermoelastic_stress(jacobian, temperature)
+        match self.state_equation() {
+            None => self.elastic().thermoelastic_stress(jacobian, temperature),
+            Some(law) => law.thermoelastic_stress(jacobian, temperature),
+        }
     }
 
     fn thermal(&self) -> Option<&Thermal> {
         self.thermal.as_ref()
+    }
+
+    #[inline]
+    fn carries_tension(&self, history: &PlasticHistory) -> bool {
+        !self.has_failed(history)
     }
 
     /// μ |dev ε_e|².
@@ -253,6 +364,9 @@ impl Material for HenckyVonMises {
     }
 
     fn flow_stress(&self, history: &PlasticHistory, rate: f64, temperature: f64) -> Option<f64> {
+        if self.has_failed(history) {
+            return Some(0.0);
+        }
         let at = FlowState {
             plastic_strain: history.equivalent_plastic_strain,
             rate,
@@ -262,7 +376,8 @@ impl Material for HenckyVonMises {
     }
 
     /// Copper of the Taylor bar, Greto & Kulasegaram 2019, Sect. 4.1, with every hardening law; with
-    /// thermal properties; with moduli that fall with the temperature.
+    /// thermal properties; with moduli that fall with the temperature; with damage and an equation of
+    /// state (D. J. Steinberg, UCRL-MA-106439, 1996; Johnson & Cook 1985).
     fn examples() -> Vec<Self> {
         let copper = |hardening| Self::new(8930.0, 117e9, 0.35, hardening);
         let hardening = Hardening::Linear(hardening::Linear {
@@ -284,8 +399,30 @@ impl Material for HenckyVonMises {
             },
             ..warm.clone()
         };
+        let shocked = Self {
+            thermal: Some(Thermal {
+                expansion: 0.0,
+                ..example_thermal()
+            }),
+            damage: Some(Damage::JohnsonCook(JohnsonCookDamage {
+                d1: 0.54,
+                d2: 4.89,
+                d3: -3.03,
+                d4: 0.014,
+                d5: 1.12,
+                reference_rate: 1.0,
+                reference_temperature: 293.15,
+                melting_temperature: 1356.0,
+            })),
+            equation_of_state: Some(EquationOfState::MieGrueneisen(MieGrueneisen {
+                c0: 3940.0,
+                s: 1.489,
+                gamma0: 2.02,
+            })),
+            ..warm.clone()
+        };
         let mut examples: Vec<_> = Hardening::examples().into_iter().map(copper).collect();
-        examples.extend([warm, softening]);
+        examples.extend([warm, softening, shocked]);
         examples
     }
 }
@@ -301,5 +438,7 @@ pub(super) fn example_thermal() -> Thermal {
     }
 }
 
+#[cfg(test)]
+mod homogeneous;
 #[cfg(test)]
 mod tests;
