@@ -53,6 +53,7 @@ mod resolved;
 mod scheme;
 mod section;
 mod selection;
+mod shape;
 mod signal;
 mod suggestion;
 mod value;

@@ -9,9 +9,10 @@ use crate::document::{Node, Value};
 use crate::error::Problem;
 use crate::schema::{self, Limit};
 use crate::section::{Field, Section};
+use crate::shape::read_points;
 use crate::signal::{Scope, VARIABLES, signal, velocity_components};
 use crate::units::Measure;
-use crate::value::{number, shown, vector};
+use crate::value::{number, shown};
 
 /// How far a particle may stand in an obstacle at the start unless the case allows more, over the
 /// spacing of its body.
@@ -249,16 +250,7 @@ fn read_chain(
 ) -> Result<(Chain, toml::Table), Problem> {
     let mut section = Section::open(node, path, schema::CHAIN)?;
     let field = section.need("points")?;
-    let mut points = Vec::new();
-    for (number, item) in field.items()?.into_iter().enumerate() {
-        let point = vector(
-            item,
-            &format!("{}.{number}", field.path),
-            Measure::LENGTH,
-            Dimension::PlaneStrain,
-        )?;
-        points.push([point.x, point.y]);
-    }
+    let points = read_points(&field)?;
     section.record(
         "points",
         points
@@ -270,10 +262,10 @@ fn read_chain(
         None => vec![0.0; points.len()],
         Some(field) => {
             let items = field.items()?.into_iter().enumerate();
-            let radius = |(number, item): (usize, &Node)| {
-                self::number(
+            let radius = |(place, item): (usize, &Node)| {
+                number(
                     item,
-                    &format!("{}.{number}", field.path),
+                    &format!("{}.{place}", field.path),
                     Measure::LENGTH,
                     Limit::NotNegative,
                 )

@@ -99,6 +99,46 @@ pub enum GeometryError {
         /// A face beside it that has an area.
         instead: &'static str,
     },
+    /// Two neighbouring corners of a polygon are the same.
+    #[error("corner {index} of the polygon at ({x}, {y}) m coincides with the next; remove one")]
+    CoincidentCorners {
+        /// The first of the two, counted from zero.
+        index: usize,
+        /// Its coordinate, m.
+        x: f64,
+        /// Its coordinate, m.
+        y: f64,
+    },
+    /// Two edges of a polygon meet where they should not.
+    #[error(
+        "edges {first} and {second} of the polygon cross or touch near ({x}, {y}) m; edge k runs \
+         from corner k to the next one"
+    )]
+    CrossesItself {
+        /// One edge, counted from zero.
+        first: usize,
+        /// The other edge.
+        second: usize,
+        /// Where they meet, m.
+        x: f64,
+        /// Where they meet, m.
+        y: f64,
+    },
+    /// A part of the shape is too thin for the lattice.
+    #[error(
+        "{lost_percent:.1} % of the volume of the {shape} lies in parts too thin for the lattice, \
+         allowed are {limit_percent} %; reduce the spacing (now {spacing:.3e} m)"
+    )]
+    Unresolved {
+        /// The shape's name.
+        shape: &'static str,
+        /// Volume far from every bond, percent.
+        lost_percent: f64,
+        /// Accepted volume far from every bond, percent.
+        limit_percent: f64,
+        /// Spacing of the lattice, m.
+        spacing: f64,
+    },
     /// The normal of a half-space has no direction.
     #[error("normal ({x}, {y}, {z}) of a half-space has no direction; give a non-zero vector")]
     NoDirection {

@@ -36,15 +36,19 @@
 //! z = 0 whose volumes and areas are those of 1 m thickness.
 
 mod body;
+mod carved;
 mod cells;
+mod chords;
 mod clipped;
 mod cuboid;
 mod dimension;
 mod error;
+mod exposed;
 mod face;
 mod grid;
 mod lattice;
 mod neighbours;
+mod polygon;
 mod rings;
 mod section;
 mod selection;
@@ -57,6 +61,7 @@ pub use error::GeometryError;
 pub use face::{FaceArea, face_areas, face_nodes};
 pub use lattice::{Lattice, Spacing};
 pub use neighbours::{Csr, neighbours, neighbours_of};
+pub use polygon::Polygon;
 pub use selection::{Selection, select};
 pub use shape::Shape;
 

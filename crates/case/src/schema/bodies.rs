@@ -71,6 +71,66 @@ pub const SHAPES: &[Key] = &[
         Optional,
         "cylinder along an axis, 3d only; faces base, top, side, edges rim_base, rim_top",
     ),
+    key(
+        "sphere",
+        Table(SPHERE),
+        Optional,
+        "sphere, 3d only; faces as for a union",
+    ),
+    key(
+        "polygon",
+        Table(POLYGON),
+        Optional,
+        "polygon in x, y (in 3d the prism over it); faces as for a union",
+    ),
+    key(
+        "union",
+        COMBINATION,
+        Optional,
+        "what lies in any of the shapes; faces left ... top on the bounding box, and facing_left ... facing_top for all of the surface that faces this way",
+    ),
+    key(
+        "intersection",
+        COMBINATION,
+        Optional,
+        "what lies in every one of the shapes; faces as for a union",
+    ),
+    key(
+        "difference",
+        COMBINATION,
+        Optional,
+        "the first shape without the others; faces as for a union",
+    ),
+];
+
+const COMBINATION: super::Kind = Other("a list of two or more shapes");
+
+/// A sphere as a body.
+pub(crate) const SPHERE: &[Key] = &[
+    key("centre", PLACE, Required, "centre"),
+    key("radius", LENGTH, Required, "radius"),
+];
+
+/// A polygon.
+pub(crate) const POLYGON: &[Key] = &[
+    key(
+        "points",
+        Other("a list of [x, y] lengths"),
+        Required,
+        "corners in either direction; the last is joined to the first",
+    ),
+    key(
+        "fillets",
+        Other("a list of radii, one per point, 0 for a sharp corner"),
+        Derived("all sharp"),
+        "radii of the arcs that round the corners, cut into pieces of 5 degrees",
+    ),
+    key(
+        "extrude",
+        Other("[lowest z, highest z]"),
+        Derived("none in plane strain, required in 3d"),
+        "extent along z",
+    ),
 ];
 
 /// A box.
@@ -110,7 +170,7 @@ pub const LATTICE: &[Key] = &[
         "counts",
         Other("nodes along each axis, e.g. [21, 11]"),
         Optional,
-        "cubic lattice with these nodes, for a box",
+        "cubic lattice with these nodes along the edges of the bounding box; not for discs and cylinders",
     ),
     key(
         "per_radius",
