@@ -1,5 +1,7 @@
 //! `[[body]]`: shape, lattice, material, initial velocity.
 
+use std::path::Path;
+
 use jstsph_geometry::{Body, Dimension, Lattice, Shape, Spacing, build_body};
 use jstsph_material::ROOM_TEMPERATURE;
 use jstsph_solver::{ModelBody, Quadrature};
@@ -30,6 +32,8 @@ pub(crate) struct Context<'a> {
     pub(crate) dimension: Dimension,
     pub(crate) quadrature: Quadrature,
     pub(crate) materials: &'a Materials,
+    /// Folder of the case file.
+    pub(crate) folder: &'a Path,
 }
 
 /// Reads one body; `others` are the places of those before it.
@@ -48,7 +52,7 @@ pub(crate) fn read_body(
     table.rename(format!("body.{name}"));
     let section = &mut table;
 
-    let shape = read_shape(section, context.dimension)?;
+    let shape = read_shape(section, context.dimension, context.folder)?;
     let (lattice, lattice_origin) = read_lattice(section, &shape, context)?;
     let body = build_body(shape, lattice, context.dimension)
         .map_err(|error| Problem::new(&lattice_origin, format!("body `{name}`: {error}")))?;

@@ -55,6 +55,7 @@ mod section;
 mod selection;
 mod shape;
 mod signal;
+mod stl;
 mod suggestion;
 mod value;
 

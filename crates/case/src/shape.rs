@@ -1,5 +1,7 @@
 //! The `shape` of a body: primitives, polygons and combinations of them.
 
+use std::path::Path;
+
 use jstsph_contact::{Chain, Profile, Side, Surface};
 use jstsph_geometry::{Axis, Dimension, Polygon, Shape};
 use jstsph_tensor::Vec3;
@@ -8,27 +10,34 @@ use crate::document::Node;
 use crate::error::Problem;
 use crate::schema::{self, Limit};
 use crate::section::{Field, Section};
+use crate::stl::read_stl;
 use crate::units::Measure;
 use crate::value::{number, vector};
 
-/// Reads the shape of a body.
+/// Reads the shape of a body; paths of files start at `folder`.
 pub(crate) fn read_shape(
     section: &mut Section<'_>,
     dimension: Dimension,
+    folder: &Path,
 ) -> Result<Shape, Problem> {
     let field = section.need("shape")?;
-    let (shape, resolved) = read(&field.node, &field.path, dimension)?;
+    let (shape, resolved) = read(&field.node, &field.path, dimension, folder)?;
     section.record("shape", resolved);
     Ok(shape)
 }
 
-fn read(node: &Node, path: &str, dimension: Dimension) -> Result<(Shape, toml::Table), Problem> {
+fn read(
+    node: &Node,
+    path: &str,
+    dimension: Dimension,
+    folder: &Path,
+) -> Result<(Shape, toml::Table), Problem> {
     let mut outer = Section::open(node, path, schema::SHAPES)?;
     let kind = outer.variant()?;
     let inner = outer.need(kind)?;
     let shape = match kind {
         "union" | "intersection" | "difference" => {
-            let (parts, resolved) = read_parts(&inner, dimension)?;
+            let (parts, resolved) = read_parts(&inner, dimension, folder)?;
             outer.record(kind, resolved);
             match kind {
                 "union" => Shape::Union(parts),
@@ -38,7 +47,11 @@ fn read(node: &Node, path: &str, dimension: Dimension) -> Result<(Shape, toml::T
         }
         _ => {
             let mut part = Section::open(&inner.node, &inner.path, inner.kind.keys())?;
-            let shape = read_primitive(kind, &mut part, dimension)?;
+            let shape = if kind == "stl" {
+                Shape::Mesh(read_stl(&mut part, folder)?)
+            } else {
+                read_primitive(kind, &mut part, dimension)?
+            };
             outer.record(kind, part.finish());
             shape
         }
@@ -52,10 +65,11 @@ fn read(node: &Node, path: &str, dimension: Dimension) -> Result<(Shape, toml::T
 fn read_parts(
     field: &Field<'_>,
     dimension: Dimension,
+    folder: &Path,
 ) -> Result<(Vec<Shape>, Vec<toml::Value>), Problem> {
     let (mut parts, mut resolved) = (Vec::new(), Vec::new());
     for (number, node) in field.items()?.into_iter().enumerate() {
-        let (shape, table) = read(node, &format!("{}.{number}", field.path), dimension)?;
+        let (shape, table) = read(node, &format!("{}.{number}", field.path), dimension, folder)?;
         parts.push(shape);
         resolved.push(table.into());
     }

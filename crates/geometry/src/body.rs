@@ -81,6 +81,7 @@ pub fn build_body(
         Shape::Box { .. }
         | Shape::Sphere { .. }
         | Shape::Polygon(_)
+        | Shape::Mesh(_)
         | Shape::Union(_)
         | Shape::Intersection(_)
         | Shape::Difference(_) => None,

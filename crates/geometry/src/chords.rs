@@ -52,6 +52,7 @@ pub(crate) fn chords(shape: &Shape, y: f64, z: f64, dimension: Dimension) -> Cho
             Some([low, high]) if !within(low, z, high) => Vec::new(),
             _ => pairs(&polygon.crossings(y)),
         },
+        Shape::Mesh(mesh) => pairs(&mesh.crossings(y, z)),
         Shape::Union(parts) => parts
             .iter()
             .map(|part| chords(part, y, z, dimension))
@@ -121,7 +122,7 @@ const HALVINGS: u32 = 24;
 
 /// Panels whose Simpson and trapezoidal rules differ by less than this part of the bounding box
 /// are not halved.
-const ACCURACY: f64 = 1e-8;
+const ACCURACY: f64 = 1e-7;
 
 /// Volume of any shape (area in plane strain) from its chords.
 ///

@@ -124,6 +124,46 @@ pub enum GeometryError {
         /// Where they meet, m.
         y: f64,
     },
+    /// A file that cannot be read as STL.
+    #[error("this is no readable STL file: {reason}")]
+    UnreadableMesh {
+        /// What the reader says.
+        reason: String,
+    },
+    /// A surface without triangles.
+    #[error("the surface has no triangles")]
+    EmptyMesh,
+    /// Triangles are missing, or their corners do not meet exactly.
+    #[error(
+        "the surface is not closed: {count} edges have triangles on one side only, the first \
+         around ({x}, {y}, {z}) m; fill the holes, and write corners that coincide with equal \
+         coordinates"
+    )]
+    OpenMesh {
+        /// Number of such edges.
+        count: usize,
+        /// Middle of one of them, m.
+        x: f64,
+        /// Middle of one of them, m.
+        y: f64,
+        /// Middle of one of them, m.
+        z: f64,
+    },
+    /// Triangles at an edge disagree about what is outside.
+    #[error(
+        "the triangles of the surface face different sides at {count} edges, the first around \
+         ({x}, {y}, {z}) m; orient all of them outwards"
+    )]
+    InconsistentMesh {
+        /// Number of such edges.
+        count: usize,
+        /// Middle of one of them, m.
+        x: f64,
+        /// Middle of one of them, m.
+        y: f64,
+        /// Middle of one of them, m.
+        z: f64,
+    },
     /// A part of the shape is too thin for the lattice.
     #[error(
         "{lost_percent:.1} % of the volume of the {shape} lies in parts too thin for the lattice, \

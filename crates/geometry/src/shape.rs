@@ -1,11 +1,12 @@
 //! The solids that a body can be cut from.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use jstsph_tensor::Vec3;
 
 use crate::chords;
-use crate::{Axis, Dimension, GeometryError, Polygon};
+use crate::{Axis, Dimension, GeometryError, Polygon, TriangleMesh};
 
 /// A solid in its undeformed position; all lengths in m.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,6 +45,8 @@ pub enum Shape {
     },
     /// Polygon (plane strain) or the prism over one (three dimensions).
     Polygon(Polygon),
+    /// What a closed surface of triangles encloses; three dimensions only.
+    Mesh(Arc<TriangleMesh>),
     /// What lies in any of the parts.
     Union(Vec<Shape>),
     /// What lies in every part.
@@ -94,6 +97,7 @@ impl Shape {
             Self::Cylinder { .. } => "cylinder",
             Self::Sphere { .. } => "sphere",
             Self::Polygon(_) => "polygon",
+            Self::Mesh(_) => "triangle mesh",
             Self::Union(_) => "union",
             Self::Intersection(_) => "intersection",
             Self::Difference(_) => "difference",
@@ -143,6 +147,7 @@ impl Shape {
                 let height = polygon.extrusion().map_or(1.0, |[low, high]| high - low);
                 polygon.area() * height
             }
+            Self::Mesh(mesh) => mesh.volume(),
             Self::Union(_) | Self::Intersection(_) | Self::Difference(_) => {
                 chords::volume(self, dimension)
             }
@@ -174,6 +179,7 @@ impl Shape {
                 (centre.add_scalar(-radius), centre.add_scalar(*radius))
             }
             Self::Polygon(polygon) => polygon.bounds(),
+            Self::Mesh(mesh) => mesh.bounds(),
             Self::Union(parts) => join(parts, |(low, high), (other_low, other_high)| {
                 (low.inf(&other_low), high.sup(&other_high))
             }),
@@ -223,6 +229,7 @@ impl Shape {
                     ]),
                 }
             }
+            Self::Mesh(mesh) => mesh.nearest(x).distance,
             Self::Union(parts) => parts
                 .iter()
                 .map(|part| part.signed_distance(x))
@@ -246,8 +253,7 @@ impl Shape {
     ///
     /// # Errors
     /// [`GeometryError::WrongDimension`], [`GeometryError::NotFinite`],
-    /// [`GeometryError::NotPositive`] (a length, or the volume of a combination), or
-    /// [`GeometryError::TooFew`] parts of a combination.
+    /// [`GeometryError::NotPositive`] or [`GeometryError::TooFew`] parts of a combination.
     pub fn validate(&self, dimension: Dimension) -> Result<(), GeometryError> {
         let item = self.name();
         let wrong = |remedy| {
@@ -261,6 +267,7 @@ impl Shape {
             (Self::Disc { .. }, Dimension::Solid) => return wrong("a cylinder"),
             (Self::Cylinder { .. }, Dimension::PlaneStrain) => return wrong("a disc or a box"),
             (Self::Sphere { .. }, Dimension::PlaneStrain) => return wrong("a disc"),
+            (Self::Mesh(_), Dimension::PlaneStrain) => return wrong("a polygon"),
             (Self::Polygon(polygon), Dimension::Solid) if polygon.extrusion().is_none() => {
                 return wrong("a polygon with an extrusion along z");
             }
@@ -300,7 +307,7 @@ impl Shape {
                 positive(item, "radius", *radius)
             }
             // Checked when it was built.
-            Self::Polygon(_) => Ok(()),
+            Self::Polygon(_) | Self::Mesh(_) => Ok(()),
             Self::Union(parts) | Self::Intersection(parts) | Self::Difference(parts) => {
                 if parts.len() < 2 {
                     return Err(GeometryError::TooFew {
@@ -311,9 +318,7 @@ impl Shape {
                 }
                 parts.iter().try_for_each(|part| part.validate(dimension))?;
                 let (low, high) = self.bounds();
-                (0..dimension.count())
-                    .try_for_each(|i| positive(item, SIZES[i], high[i] - low[i]))?;
-                positive(item, "volume", self.volume(dimension))
+                (0..dimension.count()).try_for_each(|i| positive(item, SIZES[i], high[i] - low[i]))
             }
         }
     }
@@ -330,7 +335,7 @@ impl Shape {
                         *part = part.flattened(dimension);
                     }
                 }
-                Self::Cylinder { .. } | Self::Sphere { .. } | Self::Polygon(_) => {}
+                Self::Cylinder { .. } | Self::Sphere { .. } | Self::Polygon(_) | Self::Mesh(_) => {}
             }
         }
         shape

@@ -1,7 +1,7 @@
 //! Keys of `[[body]]`, its shape, lattice and motion, and of selections and signals.
 
 use super::Kind::{
-    Count, Flag, Number, OneOf, Other, Signal, Signals, Table, TableOr, Text, Vector,
+    Choice, Count, Flag, Number, OneOf, Other, Signal, Signals, Table, TableOr, Text, Vector,
 };
 use super::Presence::{Default, Derived, Optional, Required};
 use super::{AXIS, Key, LENGTH, Limit, PLACE, key};
@@ -84,6 +84,12 @@ pub const SHAPES: &[Key] = &[
         "polygon in x, y (in 3d the prism over it); faces as for a union",
     ),
     key(
+        "stl",
+        Table(STL),
+        Optional,
+        "what a closed surface of triangles encloses, 3d only; faces as for a union",
+    ),
+    key(
         "union",
         COMBINATION,
         Optional,
@@ -110,6 +116,38 @@ pub(crate) const SPHERE: &[Key] = &[
     key("centre", PLACE, Required, "centre"),
     key("radius", LENGTH, Required, "radius"),
 ];
+
+/// The file of a surface.
+pub(crate) const STL_FILE: Key = key(
+    "file",
+    Text,
+    Required,
+    "path of the STL file, text or binary, relative to the folder of the case",
+);
+/// Its unit.
+pub(crate) const STL_UNIT: Key = key(
+    "unit",
+    Choice(|| super::names(crate::stl::UNITS)),
+    Required,
+    "unit of the coordinates in the file",
+);
+/// A factor for its coordinates.
+pub(crate) const STL_SCALE: Key = key(
+    "scale",
+    Number(Measure::NUMBER, Limit::Positive),
+    Default("1.0"),
+    "factor for the coordinates",
+);
+/// Where it is put.
+pub(crate) const STL_TRANSLATE: Key = key(
+    "translate",
+    PLACE,
+    Optional,
+    "how far the surface is moved, after scaling",
+);
+
+/// A surface from an STL file as a body.
+pub(crate) const STL: &[Key] = &[STL_FILE, STL_UNIT, STL_SCALE, STL_TRANSLATE];
 
 /// A polygon.
 pub(crate) const POLYGON: &[Key] = &[

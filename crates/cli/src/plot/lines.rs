@@ -140,7 +140,7 @@ fn outline(shape: &Shape, right: usize, up: usize, normal: usize) -> Vec<Vec<Vec
             let lines = parts.iter().map(|part| outline(part, right, up, normal));
             return lines.flatten().collect();
         }
-        Shape::Cylinder { .. } | Shape::Polygon(_) => {
+        Shape::Cylinder { .. } | Shape::Polygon(_) | Shape::Mesh(_) => {
             let (min, max) = shape.bounds();
             rectangle(min, max, right, up)
         }
