@@ -69,6 +69,9 @@ fn describe(condition: &Condition) -> String {
     let kind = match &condition.kind {
         ConditionKind::Velocity(components) => format!("velocity {}", axes(components)),
         ConditionKind::Traction { .. } => "traction".to_owned(),
+        ConditionKind::Temperature(_) => "temperature".to_owned(),
+        ConditionKind::HeatFlux { .. } => "heat flux".to_owned(),
+        ConditionKind::Convection { .. } => "convection".to_owned(),
     };
     format!("{}: {kind} ({})", condition.name, condition.particles.len())
 }
