@@ -4,6 +4,7 @@
 
 mod constrained_block;
 mod ecae;
+mod l_shaped_block;
 mod taylor_bar;
 
 use std::path::Path;

@@ -8,4 +8,5 @@ mod sliding_block;
 mod swinging_cube;
 mod swinging_plate;
 mod time_order;
+mod triangle_surfaces;
 mod upsetting;

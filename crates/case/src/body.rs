@@ -1,6 +1,8 @@
 //! `[[body]]`: shape, lattice, material, initial velocity.
 
-use jstsph_geometry::{Axis, Body, Dimension, Lattice, Shape, Spacing, build_body};
+use std::path::Path;
+
+use jstsph_geometry::{Body, Dimension, Lattice, Shape, Spacing, build_body};
 use jstsph_material::ROOM_TEMPERATURE;
 use jstsph_solver::{ModelBody, Quadrature};
 use jstsph_tensor::Vec3;
@@ -10,6 +12,7 @@ use crate::error::{Origin, Problem};
 use crate::material::Materials;
 use crate::schema;
 use crate::section::{Field, Section};
+use crate::shape::read_shape;
 use crate::signal::{Scope, VARIABLES, signal, signals};
 use crate::units::Measure;
 use crate::value::{components, count, to_integer, vector};
@@ -29,6 +32,8 @@ pub(crate) struct Context<'a> {
     pub(crate) dimension: Dimension,
     pub(crate) quadrature: Quadrature,
     pub(crate) materials: &'a Materials,
+    /// Folder of the case file.
+    pub(crate) folder: &'a Path,
 }
 
 /// Reads one body; `others` are the places of those before it.
@@ -47,7 +52,7 @@ pub(crate) fn read_body(
     table.rename(format!("body.{name}"));
     let section = &mut table;
 
-    let shape = read_shape(section, context.dimension)?;
+    let shape = read_shape(section, context.dimension, context.folder)?;
     let (lattice, lattice_origin) = read_lattice(section, &shape, context)?;
     let body = build_body(shape, lattice, context.dimension)
         .map_err(|error| Problem::new(&lattice_origin, format!("body `{name}`: {error}")))?;
@@ -101,36 +106,6 @@ pub(crate) fn check_name(section: &Section<'_>, name: &str) -> Result<(), Proble
             .help("allowed: letters, digits, `_` and `-`"));
     }
     Ok(())
-}
-
-fn read_shape(section: &mut Section<'_>, dimension: Dimension) -> Result<Shape, Problem> {
-    let field = section.need("shape")?;
-    let mut outer = Section::open(&field.node, &field.path, schema::SHAPES)?;
-    let kind = outer.variant()?;
-    let inner = outer.need(kind)?;
-    let mut part = Section::open(&inner.node, &inner.path, inner.kind.keys())?;
-    let shape = match kind {
-        "box" => Shape::Box {
-            min: part.vector("min", dimension)?,
-            max: part.vector("max", dimension)?,
-        },
-        "disc" => Shape::Disc {
-            centre: part.vector("centre", dimension)?,
-            radius: part.number("radius")?,
-        },
-        _ => Shape::Cylinder {
-            base: part.vector("base", dimension)?,
-            axis: part.choice("axis", &[("x", Axis::X), ("y", Axis::Y), ("z", Axis::Z)])?,
-            radius: part.number("radius")?,
-            height: part.number("height")?,
-        },
-    };
-    shape
-        .validate(dimension)
-        .map_err(|error| field.problem(format!("`{}`: {error}", field.path)))?;
-    outer.record(kind, part.finish());
-    section.record("shape", outer.finish());
-    Ok(shape)
 }
 
 fn read_lattice(

@@ -106,7 +106,7 @@ pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<Case, CaseErr
     parse(&name, &file, &text, overrides)
 }
 
-/// The same for a text; `file` is only used in messages.
+/// The same for a text; `file` is used in messages, and paths in the case start at its folder.
 ///
 /// # Errors
 /// [`CaseError::Input`] for the first mistake.
@@ -159,6 +159,7 @@ fn read(name: &str, source: &Source) -> Result<Case, Problem> {
         dimension,
         quadrature: scheme.quadrature,
         materials: &materials,
+        folder: Path::new(&source.file).parent().unwrap_or(Path::new("")),
     };
     let (mut bodies, mut places, mut tables) = (Vec::new(), Vec::new(), Vec::new());
     for (number, node) in list(&section, "body")?.into_iter().enumerate() {
@@ -187,7 +188,7 @@ fn read(name: &str, source: &Source) -> Result<Case, Problem> {
 
     let (mut obstacles, mut tables, mut smallest_fillets) = (Vec::new(), Vec::new(), Vec::new());
     for (number, node) in list(&section, "obstacle")?.into_iter().enumerate() {
-        let obstacle = read_obstacle(node, number, &bodies, dimension)?;
+        let obstacle = read_obstacle(node, number, &bodies, &context)?;
         smallest_fillets.push(obstacle.smallest_fillet);
         obstacles.push(obstacle.model);
         tables.push(obstacle.resolved);

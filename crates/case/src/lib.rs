@@ -53,7 +53,9 @@ mod resolved;
 mod scheme;
 mod section;
 mod selection;
+mod shape;
 mod signal;
+mod stl;
 mod suggestion;
 mod value;
 

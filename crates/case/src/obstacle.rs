@@ -5,13 +5,16 @@ use jstsph_geometry::Dimension;
 use jstsph_solver::{ModelBody, ModelObstacle, ObstacleHeat, Signal};
 use jstsph_tensor::Vec3;
 
+use crate::body::Context;
 use crate::document::{Node, Value};
 use crate::error::Problem;
 use crate::schema::{self, Limit};
 use crate::section::{Field, Section};
+use crate::shape::read_points;
 use crate::signal::{Scope, VARIABLES, signal, velocity_components};
+use crate::stl::read_stl;
 use crate::units::Measure;
-use crate::value::{number, shown, vector};
+use crate::value::{number, shown};
 
 /// How far a particle may stand in an obstacle at the start unless the case allows more, over the
 /// spacing of its body.
@@ -33,8 +36,9 @@ pub(crate) fn read_obstacle(
     node: &Node,
     number: usize,
     bodies: &[ModelBody],
-    dimension: Dimension,
+    context: &Context<'_>,
 ) -> Result<ReadObstacle, Problem> {
+    let dimension = context.dimension;
     let mut section = Section::open(node, &format!("obstacle.{number}"), schema::OBSTACLE)?;
     let name = match section.field("name")? {
         Some(field) => field.text()?.to_owned(),
@@ -45,7 +49,7 @@ pub(crate) fn read_obstacle(
     section.rename(format!("obstacle.{name}"));
     let form = section.one_of(schema::OBSTACLE_FORMS)?;
     let mut fillets = Vec::new();
-    let surface = read_surface(&mut section, form, dimension, &mut fillets)?;
+    let surface = read_surface(&mut section, form, context, &mut fillets)?;
     let law = read_law(&mut section)?;
     let velocity = read_motion(&mut section, dimension)?;
     let friction = Friction::coulomb(section.number_or("friction", 0.0)?);
@@ -144,16 +148,17 @@ fn check_overlap(
 fn read_surface(
     section: &mut Section<'_>,
     form: &str,
-    dimension: Dimension,
+    context: &Context<'_>,
     fillets: &mut Vec<f64>,
 ) -> Result<Surface, Problem> {
+    let dimension = context.dimension;
     let field = section.need(form)?;
     let contact = |error: ContactError| field.problem(format!("`{}`: {error}", field.path));
     if form == "profile" {
         if dimension != Dimension::PlaneStrain {
             return Err(field
                 .problem(format!("`{}`: a profile is for plane strain", field.path))
-                .help("in 3d use plane, sphere, cylinder or box"));
+                .help("in 3d use plane, sphere, cylinder, box or stl"));
         }
         let (profile, resolved) = read_profile(&field, fillets)?;
         section.record(form, resolved);
@@ -188,6 +193,17 @@ fn read_surface(
             };
             Surface::cylinder(point, axis, radius, half_length, part.flag("inside")?)
                 .map_err(contact)?
+        }
+        "stl" => {
+            if dimension == Dimension::PlaneStrain {
+                return Err(field
+                    .problem(format!("`{}`: an STL surface is for 3d", field.path))
+                    .help("in plane strain write a profile"));
+            }
+            Surface::Mesh {
+                mesh: read_stl(&mut part, context.folder)?,
+                inside: part.flag("inside")?,
+            }
         }
         _ => {
             let mut min = part.vector("min", dimension)?;
@@ -249,16 +265,7 @@ fn read_chain(
 ) -> Result<(Chain, toml::Table), Problem> {
     let mut section = Section::open(node, path, schema::CHAIN)?;
     let field = section.need("points")?;
-    let mut points = Vec::new();
-    for (number, item) in field.items()?.into_iter().enumerate() {
-        let point = vector(
-            item,
-            &format!("{}.{number}", field.path),
-            Measure::LENGTH,
-            Dimension::PlaneStrain,
-        )?;
-        points.push([point.x, point.y]);
-    }
+    let points = read_points(&field)?;
     section.record(
         "points",
         points
@@ -270,10 +277,10 @@ fn read_chain(
         None => vec![0.0; points.len()],
         Some(field) => {
             let items = field.items()?.into_iter().enumerate();
-            let radius = |(number, item): (usize, &Node)| {
-                self::number(
+            let radius = |(place, item): (usize, &Node)| {
+                number(
                     item,
-                    &format!("{}.{number}", field.path),
+                    &format!("{}.{place}", field.path),
                     Measure::LENGTH,
                     Limit::NotNegative,
                 )

@@ -197,3 +197,46 @@ fn no_damaged_text_makes_the_reader_panic() {
         5 * characters.len()
     );
 }
+
+#[test]
+fn combinations_of_shapes_are_read_and_their_mistakes_placed() {
+    let shape = "shape = { box = { min = [\"0 mm\", \"1 mm\"], max = [\"8 mm\", \"57 mm\"] } }";
+    let lattice = "lattice = { counts = [8, 50] }";
+    let corner = "{ box = { min = [0.004, 0.02], max = [1, 1] } }";
+    let cut = format!(
+        "shape = {{ difference = [\n  {{ polygon = {{ points = [[0, 0.001], [0.008, 0.001], [0.008, 0.057], [0, 0.057]], fillets = [0, 0, 0, \"1 mm\"] }} }},\n  {corner},\n] }}"
+    );
+    let text = GOOD
+        .replace(shape, &cut)
+        .replace(lattice, "lattice = { counts = [9, 57] }");
+    let case = parse("c", "c.toml", &text, &[]).expect("a combination");
+    let body = &case.model.bodies[0].body;
+    let volume: f64 = body.volumes.iter().sum();
+    // The box less the corner less what the fillet cuts off, (1 - pi/4) mm^2 and a little more
+    // because the arc is a chain of chords of 5 degrees.
+    let whole = 8e-3 * 56e-3 - 4e-3 * 37e-3 - (1.0 - std::f64::consts::FRAC_PI_4) * 1e-6;
+    assert!((whole - 2e-9..whole).contains(&volume), "{volume} {whole}");
+    let again = parse("c", "c.toml", &case.resolved, &[]).expect("the resolved case");
+    assert_eq!(again.model.bodies[0].body.positions, body.positions);
+
+    expect(
+        shape,
+        "shape = { union = [{ box = { min = [0, 0], max = [0, 1] } }, { disc = { centre = [0, 0], radius = 1 } }] }",
+        &["c.toml:8:20: `body.billet.shape.union.0`: size along x of the box is 0 m"],
+    );
+    expect(
+        shape,
+        "shape = { union = [{ disc = { centre = [0, 0], radius = 1 } }] }",
+        &["number of shapes to combine is 1; at least 2 needed"],
+    );
+    expect(
+        shape,
+        "shape = { polygon = { points = [[0, 0], [1, 1], [1, 0], [0, 1]] } }",
+        &["edges 0 and 2 of the polygon cross or touch"],
+    );
+    expect(
+        "\"billet.top\"",
+        "\"billet.facing_top\"",
+        &["body `billet` is a box and has no face `facing_top`"],
+    );
+}

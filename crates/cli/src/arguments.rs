@@ -80,6 +80,12 @@ pub(crate) struct CheckOptions {
     /// Print the resolved case, every default written out, instead of the estimate
     #[arg(long)]
     pub(crate) resolved: bool,
+    /// Draw the set-up, with conditions and obstacles, to this file, .png or .svg
+    #[arg(long, value_name = "FILE")]
+    pub(crate) draw: Option<PathBuf>,
+    /// Direction of view of the drawing [default: xy in plane strain, oblique in 3d]
+    #[arg(long, value_enum, requires = "draw")]
+    pub(crate) view: Option<ViewName>,
 }
 
 /// Options of `plot`.

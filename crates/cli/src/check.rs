@@ -9,6 +9,7 @@ use jstsph_solver::{Quadrature, Simulation};
 use crate::arguments::CheckOptions;
 use crate::console::Console;
 use crate::error::CliError;
+use crate::plot;
 use crate::recorder::extra_columns;
 use crate::simulate;
 use crate::verdict::{duration, seconds};
@@ -20,6 +21,9 @@ const TRIAL: Duration = Duration::from_millis(500);
 pub(crate) fn run(options: &CheckOptions, console: &mut Console<'_>) -> Result<u8, CliError> {
     let case = jstsph_case::load(&options.case, &options.overrides)?;
     extra_columns(&case)?;
+    if let Some(path) = &options.draw {
+        plot::before_run(&case, options.view, path)?;
+    }
     let (pool, threads) = simulate::pool(&case, options.threads)?;
     let text = pool.install(|| {
         let simulation =
@@ -31,6 +35,9 @@ pub(crate) fn run(options: &CheckOptions, console: &mut Console<'_>) -> Result<u
         })
     })?;
     console.print(text);
+    if let Some(path) = options.draw.as_ref().filter(|_| !options.resolved) {
+        console.print(format_args!("wrote {}\n", path.display()));
+    }
     Ok(0)
 }
 

@@ -5,6 +5,7 @@ mod field;
 mod frames;
 mod history;
 mod lines;
+mod setup;
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +13,7 @@ use jstsph_case::Case;
 use jstsph_output::plot::Figure;
 use jstsph_output::read_table;
 
-use crate::arguments::{Look, PlotOptions};
+use crate::arguments::{Look, PlotOptions, ViewName};
 use crate::console::Console;
 use crate::error::CliError;
 
@@ -67,6 +68,12 @@ pub(crate) fn after_run(case: &Case, results: &Path) -> Result<Vec<PathBuf>, Cli
         written.push(path);
     }
     Ok(written)
+}
+
+/// Draws the set-up of a case.
+pub(crate) fn before_run(case: &Case, view: Option<ViewName>, path: &Path) -> Result<(), CliError> {
+    format(path)?;
+    save(&setup::figure(case, view)?, path)
 }
 
 /// How a picture is written.

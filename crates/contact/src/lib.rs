@@ -46,6 +46,7 @@ mod error;
 mod fillet;
 mod friction;
 mod law;
+mod mesh;
 mod outline;
 mod profile;
 mod resolve;

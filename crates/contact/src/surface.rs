@@ -1,8 +1,11 @@
 //! Rigid surfaces and the signed distance to them.
 
+use std::sync::Arc;
+
+use jstsph_geometry::TriangleMesh;
 use jstsph_tensor::Vec3;
 
-use crate::{ContactError, Profile, outline, solid};
+use crate::{ContactError, Profile, mesh, outline, solid};
 
 /// How far a point is from a wall, and where the way out is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,6 +63,13 @@ pub enum Surface {
         /// Particles are inside it; otherwise outside.
         inside: bool,
     },
+    /// A closed surface of triangles. In a concave edge a particle touches one side at a time.
+    Mesh {
+        /// The triangles.
+        mesh: Arc<TriangleMesh>,
+        /// Particles are inside it; otherwise outside.
+        inside: bool,
+    },
 }
 
 /// How far a direction may be from unit length: far below what would show in a distance, far above
@@ -105,10 +115,11 @@ impl Surface {
     ///
     /// # Errors
     /// Numbers that are not finite, lengths that are not positive, directions that are not unit
-    /// vectors, an empty box. Profiles were checked when they were built.
+    /// vectors, an empty box. Profiles and triangles were checked when they
+    /// were built.
     pub fn validate(&self) -> Result<(), ContactError> {
         match self {
-            Self::Profile(_) => Ok(()),
+            Self::Profile(_) | Self::Mesh { .. } => Ok(()),
             Self::Plane { point, normal } => {
                 finite("the point of a plane", point)?;
                 is_unit("the normal of a plane", normal)
@@ -216,6 +227,7 @@ impl Surface {
                 max,
                 inside: false,
             } => solid::outside_box(min, max, x),
+            Self::Mesh { mesh, inside } => mesh::gap(mesh, *inside, x),
         }
     }
 
@@ -258,6 +270,7 @@ impl Surface {
                 ..
             } => outline::cylinder(point, axis, *radius, *half_length, bounds),
             Self::Box { min, max, .. } => outline::cuboid(min, max),
+            Self::Mesh { mesh, .. } => mesh::outline(mesh),
         }
     }
 }

@@ -3,7 +3,9 @@
 use jstsph_tensor::Vec3;
 
 use crate::face::Face;
-use crate::{Cells, Dimension, GeometryError, Lattice, Shape, clipped, cuboid, lattice, rings};
+use crate::{
+    Cells, Dimension, GeometryError, Lattice, Shape, carved, clipped, cuboid, lattice, rings,
+};
 
 /// Particles of an undeformed body, with the volumes that belong to them.
 ///
@@ -58,10 +60,16 @@ pub struct Bonds {
 /// Node order: on a cubic lattice line by line, the axis with the fewest points fastest and the
 /// one with the most slowest; on rings layer by layer, from the centre outwards, counter-clockwise.
 ///
+/// Shapes other than boxes, discs and cylinders are carved out of the lattice of their bounding
+/// box ([`Shape::bounds`]): nodes are the lattice points in the shape, so that flat faces between
+/// two lattice planes have no nodes of their own; the volumes of the bonds there contain what lies
+/// beyond the outermost nodes.
+///
 /// # Errors
 /// The shape's own ([`Shape::validate`]); [`GeometryError::LatticeMismatch`],
-/// [`GeometryError::SpacingDeviates`], [`GeometryError::TooFew`] or
-/// [`GeometryError::TooManyNodes`] when the lattice does not fit the shape.
+/// [`GeometryError::SpacingDeviates`], [`GeometryError::TooFew`],
+/// [`GeometryError::TooManyNodes`] or [`GeometryError::Unresolved`] when the lattice does not fit
+/// the shape.
 pub fn build_body(
     shape: Shape,
     lattice: Lattice,
@@ -70,7 +78,13 @@ pub fn build_body(
     shape.validate(dimension)?;
     let shape = shape.flattened(dimension);
     let round = match shape {
-        Shape::Box { .. } => None,
+        Shape::Box { .. }
+        | Shape::Sphere { .. }
+        | Shape::Polygon(_)
+        | Shape::Mesh(_)
+        | Shape::Union(_)
+        | Shape::Intersection(_)
+        | Shape::Difference(_) => None,
         Shape::Disc { centre, radius } => Some(Round::disc(centre, radius)),
         Shape::Cylinder {
             base,
@@ -90,7 +104,11 @@ pub fn build_body(
     match (round, lattice) {
         (None, Lattice::Cubic { spacing }) => {
             let counts = lattice::box_counts(spacing, &shape, dimension)?;
-            Ok(cuboid::build(shape, counts, dimension))
+            if matches!(shape, Shape::Box { .. }) {
+                Ok(cuboid::build(shape, counts, dimension))
+            } else {
+                carved::build(shape, counts, dimension)
+            }
         }
         (None, Lattice::Rings { .. }) => Err(GeometryError::LatticeMismatch {
             lattice: "rings",

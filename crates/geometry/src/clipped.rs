@@ -85,7 +85,7 @@ pub(crate) fn build(shape: Shape, round: &Round, n: usize, layers: usize) -> Bod
 }
 
 /// V_a = ½ Σ V_q over the node's bonds, so that both quadratures share masses.
-fn node_volumes(bonds: &Bonds, nodes: usize) -> Vec<f64> {
+pub(crate) fn node_volumes(bonds: &Bonds, nodes: usize) -> Vec<f64> {
     let mut volumes = vec![0.0; nodes];
     for (ends, volume) in bonds.ends.iter().zip(&bonds.volumes) {
         for &end in ends {

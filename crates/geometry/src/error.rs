@@ -99,6 +99,86 @@ pub enum GeometryError {
         /// A face beside it that has an area.
         instead: &'static str,
     },
+    /// Two neighbouring corners of a polygon are the same.
+    #[error("corner {index} of the polygon at ({x}, {y}) m coincides with the next; remove one")]
+    CoincidentCorners {
+        /// The first of the two, counted from zero.
+        index: usize,
+        /// Its coordinate, m.
+        x: f64,
+        /// Its coordinate, m.
+        y: f64,
+    },
+    /// Two edges of a polygon meet where they should not.
+    #[error(
+        "edges {first} and {second} of the polygon cross or touch near ({x}, {y}) m; edge k runs \
+         from corner k to the next one"
+    )]
+    CrossesItself {
+        /// One edge, counted from zero.
+        first: usize,
+        /// The other edge.
+        second: usize,
+        /// Where they meet, m.
+        x: f64,
+        /// Where they meet, m.
+        y: f64,
+    },
+    /// A file that cannot be read as STL.
+    #[error("this is no readable STL file: {reason}")]
+    UnreadableMesh {
+        /// What the reader says.
+        reason: String,
+    },
+    /// A surface without triangles.
+    #[error("the surface has no triangles")]
+    EmptyMesh,
+    /// Triangles are missing, or their corners do not meet exactly.
+    #[error(
+        "the surface is not closed: {count} edges have triangles on one side only, the first \
+         around ({x}, {y}, {z}) m; fill the holes, and write corners that coincide with equal \
+         coordinates"
+    )]
+    OpenMesh {
+        /// Number of such edges.
+        count: usize,
+        /// Middle of one of them, m.
+        x: f64,
+        /// Middle of one of them, m.
+        y: f64,
+        /// Middle of one of them, m.
+        z: f64,
+    },
+    /// Triangles at an edge disagree about what is outside.
+    #[error(
+        "the triangles of the surface face different sides at {count} edges, the first around \
+         ({x}, {y}, {z}) m; orient all of them outwards"
+    )]
+    InconsistentMesh {
+        /// Number of such edges.
+        count: usize,
+        /// Middle of one of them, m.
+        x: f64,
+        /// Middle of one of them, m.
+        y: f64,
+        /// Middle of one of them, m.
+        z: f64,
+    },
+    /// A part of the shape is too thin for the lattice.
+    #[error(
+        "{lost_percent:.1} % of the volume of the {shape} lies in parts too thin for the lattice, \
+         allowed are {limit_percent} %; reduce the spacing (now {spacing:.3e} m)"
+    )]
+    Unresolved {
+        /// The shape's name.
+        shape: &'static str,
+        /// Volume far from every bond, percent.
+        lost_percent: f64,
+        /// Accepted volume far from every bond, percent.
+        limit_percent: f64,
+        /// Spacing of the lattice, m.
+        spacing: f64,
+    },
     /// The normal of a half-space has no direction.
     #[error("normal ({x}, {y}, {z}) of a half-space has no direction; give a non-zero vector")]
     NoDirection {

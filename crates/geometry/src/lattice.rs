@@ -49,7 +49,7 @@ const SPACING_TOLERANCE: f64 = 0.2;
 /// need tens of gigabytes.
 const NODE_LIMIT: usize = 100_000_000;
 
-/// Nodes along each axis of a box (1 along z in plane strain).
+/// Nodes along each axis of the bounding box (1 along z in plane strain).
 pub(crate) fn box_counts(
     spacing: Spacing,
     shape: &Shape,
@@ -66,7 +66,7 @@ pub(crate) fn box_counts(
             Spacing::Radial { .. } => {
                 return Err(GeometryError::LatticeMismatch {
                     lattice: "nodes per radius",
-                    shape: "box",
+                    shape: shape.name(),
                     remedy: "a spacing or counts along the axes",
                 });
             }

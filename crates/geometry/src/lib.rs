@@ -36,15 +36,20 @@
 //! z = 0 whose volumes and areas are those of 1 m thickness.
 
 mod body;
+mod carved;
 mod cells;
+mod chords;
 mod clipped;
 mod cuboid;
 mod dimension;
 mod error;
+mod exposed;
 mod face;
 mod grid;
 mod lattice;
+mod mesh;
 mod neighbours;
+mod polygon;
 mod rings;
 mod section;
 mod selection;
@@ -56,7 +61,9 @@ pub use dimension::{Axis, Dimension};
 pub use error::GeometryError;
 pub use face::{FaceArea, face_areas, face_nodes};
 pub use lattice::{Lattice, Spacing};
+pub use mesh::{SurfacePoint, TriangleMesh};
 pub use neighbours::{Csr, neighbours, neighbours_of};
+pub use polygon::Polygon;
 pub use selection::{Selection, select};
 pub use shape::Shape;
 

@@ -163,6 +163,7 @@ fn near_rim(body: &Body, node: usize) -> bool {
     let step = match body.shape {
         Shape::Box { .. } => return false,
         Shape::Disc { .. } | Shape::Cylinder { .. } => body.weights[node].sqrt().max(body.spacing),
+        _ => unreachable!("not in every_kind"),
     };
     body.shape.signed_distance(&body.positions[node]) > -3.0 * step
 }
@@ -355,6 +356,7 @@ fn face_areas_add_up_and_point_outwards() {
             }
             (Shape::Disc { radius, .. }, _) => 2.0 * PI * radius,
             (Shape::Cylinder { radius, height, .. }, _) => 2.0 * PI * radius * (radius + height),
+            _ => unreachable!("not in every_kind"),
         };
         assert_close(total, expected, "surface");
         // A closed surface under constant pressure is in equilibrium.

@@ -1,7 +1,7 @@
 //! Keys of `[[body]]`, its shape, lattice and motion, and of selections and signals.
 
 use super::Kind::{
-    Count, Flag, Number, OneOf, Other, Signal, Signals, Table, TableOr, Text, Vector,
+    Choice, Count, Flag, Number, OneOf, Other, Signal, Signals, Table, TableOr, Text, Vector,
 };
 use super::Presence::{Default, Derived, Optional, Required};
 use super::{AXIS, Key, LENGTH, Limit, PLACE, key};
@@ -71,6 +71,104 @@ pub const SHAPES: &[Key] = &[
         Optional,
         "cylinder along an axis, 3d only; faces base, top, side, edges rim_base, rim_top",
     ),
+    key(
+        "sphere",
+        Table(SPHERE),
+        Optional,
+        "sphere, 3d only; faces as for a union",
+    ),
+    key(
+        "polygon",
+        Table(POLYGON),
+        Optional,
+        "polygon in x, y (in 3d the prism over it); faces as for a union",
+    ),
+    key(
+        "stl",
+        Table(STL),
+        Optional,
+        "what a closed surface of triangles encloses, 3d only; faces as for a union",
+    ),
+    key(
+        "union",
+        COMBINATION,
+        Optional,
+        "what lies in any of the shapes; faces left ... top on the bounding box, and facing_left ... facing_top for all of the surface that faces this way",
+    ),
+    key(
+        "intersection",
+        COMBINATION,
+        Optional,
+        "what lies in every one of the shapes; faces as for a union",
+    ),
+    key(
+        "difference",
+        COMBINATION,
+        Optional,
+        "the first shape without the others; faces as for a union",
+    ),
+];
+
+const COMBINATION: super::Kind = Other("a list of two or more shapes");
+
+/// A sphere as a body.
+pub(crate) const SPHERE: &[Key] = &[
+    key("centre", PLACE, Required, "centre"),
+    key("radius", LENGTH, Required, "radius"),
+];
+
+/// The file of a surface.
+pub(crate) const STL_FILE: Key = key(
+    "file",
+    Text,
+    Required,
+    "path of the STL file, text or binary, relative to the folder of the case",
+);
+/// Its unit.
+pub(crate) const STL_UNIT: Key = key(
+    "unit",
+    Choice(|| super::names(crate::stl::UNITS)),
+    Required,
+    "unit of the coordinates in the file",
+);
+/// A factor for its coordinates.
+pub(crate) const STL_SCALE: Key = key(
+    "scale",
+    Number(Measure::NUMBER, Limit::Positive),
+    Default("1.0"),
+    "factor for the coordinates",
+);
+/// Where it is put.
+pub(crate) const STL_TRANSLATE: Key = key(
+    "translate",
+    PLACE,
+    Optional,
+    "how far the surface is moved, after scaling",
+);
+
+/// A surface from an STL file as a body.
+pub(crate) const STL: &[Key] = &[STL_FILE, STL_UNIT, STL_SCALE, STL_TRANSLATE];
+
+/// A polygon.
+pub(crate) const POLYGON: &[Key] = &[
+    key(
+        "points",
+        Other("a list of [x, y] lengths"),
+        Required,
+        "corners in either direction; the last is joined to the first",
+    ),
+    key(
+        "fillets",
+        Other("a list of radii, one per point, 0 for a sharp corner"),
+        Derived("all sharp"),
+        "radii of the arcs that round the corners, cut into pieces of 5 degrees",
+    ),
+    key(
+        "extrude",
+        Other("[lowest z, highest z]"),
+        Derived("none in plane strain, required in 3d"),
+        "extent along z",
+    ),
 ];
 
 /// A box.
@@ -110,7 +208,7 @@ pub const LATTICE: &[Key] = &[
         "counts",
         Other("nodes along each axis, e.g. [21, 11]"),
         Optional,
-        "cubic lattice with these nodes, for a box",
+        "cubic lattice with these nodes along the edges of the bounding box; not for discs and cylinders",
     ),
     key(
         "per_radius",

@@ -7,6 +7,7 @@ use super::Kind::{
     Choice, Count, Flag, Number, Other, Signal, Signals, Table, TableOr, Tables, Text, Vector,
 };
 use super::Presence::{Default, Derived, Optional, Required};
+use super::bodies::{STL_FILE, STL_SCALE, STL_TRANSLATE, STL_UNIT};
 use super::{AXIS, FIELD, Key, LENGTH, Limit, PLACE, WHERE, key, names};
 use crate::units::Measure;
 
@@ -131,6 +132,12 @@ pub const OBSTACLE: &[Key] = &[
     ),
     key("box", Table(BOX_OBSTACLE), Optional, "a box along the axes"),
     key(
+        "stl",
+        Table(STL_OBSTACLE),
+        Optional,
+        "a closed surface of triangles, 3d only",
+    ),
+    key(
         "law",
         Choice(|| vec!["inelastic", "reflection"]),
         Default("\"inelastic\""),
@@ -169,7 +176,7 @@ pub const OBSTACLE: &[Key] = &[
 ];
 
 /// The forms of an obstacle.
-pub const OBSTACLE_FORMS: &[&str] = &["profile", "plane", "sphere", "cylinder", "box"];
+pub const OBSTACLE_FORMS: &[&str] = &["profile", "plane", "sphere", "cylinder", "box", "stl"];
 
 /// Chains of a profile.
 pub(crate) const PROFILE: &[Key] = &[key("chains", Tables(CHAIN), Required, "chains")];
@@ -255,6 +262,9 @@ pub(crate) const BOX_OBSTACLE: &[Key] = &[
     key("max", PLACE, Required, "highest corner"),
     INSIDE,
 ];
+
+/// A surface from an STL file as an obstacle.
+pub(crate) const STL_OBSTACLE: &[Key] = &[STL_FILE, STL_UNIT, STL_SCALE, STL_TRANSLATE, INSIDE];
 
 /// `[[probe]]`.
 pub const PROBE: &[Key] = &[

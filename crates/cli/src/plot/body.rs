@@ -25,7 +25,7 @@ pub(super) struct Sight {
 impl Sight {
     /// What was asked for, or what shows most: plane strain as it is, solids cut through the
     /// middle along a plane that contains the axis of a cylinder.
-    fn new(case: &Case, look: &Look) -> Self {
+    pub(super) fn new(case: &Case, look: &Look) -> Self {
         let is_solid = case.model.dimension == Dimension::Solid;
         let view = look.view.unwrap_or(if is_solid {
             match case.model.bodies[0].body.shape {
@@ -46,7 +46,7 @@ impl Sight {
         }
     }
 
-    fn view(self, case: &Case) -> View {
+    pub(super) fn view(self, case: &Case) -> View {
         match self.plane {
             Some([0, 1, _]) => View::Xy,
             Some([0, ..]) => View::Xz,
@@ -256,7 +256,7 @@ fn sheet(reference: &[Vec3], layer: &[usize], axes: [usize; 3], spacing: f64) ->
 }
 
 /// Lowest and highest coordinates.
-fn box_of<'a>(points: impl Iterator<Item = &'a Vec3>) -> (Vec3, Vec3) {
+pub(super) fn box_of<'a>(points: impl Iterator<Item = &'a Vec3>) -> (Vec3, Vec3) {
     let start = (Vec3::repeat(f64::MAX), Vec3::repeat(f64::MIN));
     points.fold(start, |(low, high), x| (low.inf(x), high.sup(x)))
 }

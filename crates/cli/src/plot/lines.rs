@@ -119,26 +119,33 @@ pub(super) fn undeformed(case: &Case, sight: Sight) -> Vec<Vec<Vec3>> {
     };
     let bodies = case.model.bodies.iter();
     bodies
-        .map(|body| match &body.body.shape {
-            Shape::Box { min, max } => rectangle(*min, *max, right, up),
-            Shape::Disc { centre, radius } => circle(centre, *radius, 0, 1),
-            Shape::Cylinder {
-                base, axis, radius, ..
-            } if axis.index() == normal => circle(base, *radius, right, up),
-            Shape::Cylinder {
-                base,
-                axis,
-                radius,
-                height,
-            } => {
-                let mut min = base.add_scalar(-radius);
-                let mut max = base.add_scalar(*radius);
-                min[axis.index()] = base[axis.index()];
-                max[axis.index()] = base[axis.index()] + height;
-                rectangle(min, max, right, up)
-            }
-        })
+        .flat_map(|body| outline(&body.body.shape, right, up, normal))
         .collect()
+}
+
+/// Lines of a shape seen along `normal`; of a combination the lines of its parts.
+fn outline(shape: &Shape, right: usize, up: usize, normal: usize) -> Vec<Vec<Vec3>> {
+    let one = match shape {
+        Shape::Box { min, max } => rectangle(*min, *max, right, up),
+        Shape::Disc { centre, radius } => circle(centre, *radius, 0, 1),
+        Shape::Sphere { centre, radius } => circle(centre, *radius, right, up),
+        Shape::Cylinder {
+            base, axis, radius, ..
+        } if axis.index() == normal => circle(base, *radius, right, up),
+        Shape::Polygon(polygon) if normal == 2 => {
+            let points = polygon.points().iter().chain(polygon.points().first());
+            points.map(|&[x, y]| Vec3::new(x, y, 0.0)).collect()
+        }
+        Shape::Union(parts) | Shape::Intersection(parts) | Shape::Difference(parts) => {
+            let lines = parts.iter().map(|part| outline(part, right, up, normal));
+            return lines.flatten().collect();
+        }
+        Shape::Cylinder { .. } | Shape::Polygon(_) | Shape::Mesh(_) => {
+            let (min, max) = shape.bounds();
+            rectangle(min, max, right, up)
+        }
+    };
+    vec![one]
 }
 
 fn rectangle(min: Vec3, max: Vec3, right: usize, up: usize) -> Vec<Vec3> {

@@ -2,7 +2,7 @@
 
 use super::axis::{HALF_HEIGHT, LABEL_SIZE, Ruler, TICK, TICK_SIZE};
 use super::canvas::{Anchor, Canvas, Colour, INK, Rect, Stroke};
-use super::{ColourMap, ParticlePlot, text};
+use super::{ColourMap, Group, ParticlePlot, groups, text};
 
 const WIDTH: f64 = 15.0;
 /// Distance between plot and bar.
@@ -17,6 +17,8 @@ pub(super) struct ColourBar {
     is_exceeded: [bool; 2],
     factor: f64,
     label: String,
+    /// Takes the place of the bar, if there are any.
+    groups: Vec<Group>,
 }
 
 impl ColourBar {
@@ -50,10 +52,14 @@ impl ColourBar {
             is_exceeded: [least < lower - slack, most > upper + slack],
             factor,
             label,
+            groups: plot.groups.to_vec(),
         }
     }
 
     pub(super) fn colour(&self, value: f64) -> Colour {
+        if !self.groups.is_empty() {
+            return groups::colour(value);
+        }
         let place = (value - self.lower) / (self.upper - self.lower);
         self.colours.at(place)
     }
@@ -69,6 +75,9 @@ impl ColourBar {
 
     /// Width with tick labels and label.
     pub(super) fn space(&self) -> f64 {
+        if !self.groups.is_empty() {
+            return groups::space(&self.groups);
+        }
         // The height, and with it the number of ticks, is not known yet: up to eight fit.
         let widest = [2.0, 3.0, 4.0, 6.0, 8.0]
             .iter()
@@ -80,6 +89,9 @@ impl ColourBar {
 
     /// Draws the bar beside the plot.
     pub(super) fn draw(&self, canvas: &mut Canvas, frame: &Rect) {
+        if !self.groups.is_empty() {
+            return groups::draw(canvas, &self.groups, frame.right + GAP, frame);
+        }
         let middle = 0.5 * (frame.top + frame.bottom);
         let height = frame.height().min(330.0);
         let left = frame.right + GAP;

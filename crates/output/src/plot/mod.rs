@@ -10,6 +10,7 @@ mod cells;
 mod clip;
 mod colorbar;
 mod colormap;
+mod groups;
 mod hidden;
 mod legend;
 mod lines;
@@ -29,6 +30,7 @@ use canvas::Canvas;
 
 pub use axis::Scale;
 pub use colormap::ColourMap;
+pub use groups::Group;
 pub use lines::{LinePlot, Series, SeriesStyle};
 pub use particles::ParticlePlot;
 pub use unit::Quantity;

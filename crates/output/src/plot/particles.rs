@@ -6,7 +6,7 @@ use super::canvas::{Canvas, INK, PAPER, Stroke, mix};
 use super::colorbar::ColourBar;
 use super::hidden::visible;
 use super::panels::{Panel, Panels};
-use super::{ColourMap, Quantity, Section, View, Wall, cells, walls};
+use super::{ColourMap, Group, Quantity, Section, View, Wall, cells, walls};
 use crate::OutputError;
 use crate::error::{require_finite, require_length};
 
@@ -38,6 +38,8 @@ pub struct ParticlePlot<'a> {
     /// Lines of the undeformed body, drawn light and dashed; left out where the body has moved so
     /// far that they would more than double the area of the picture.
     pub undeformed: Vec<Vec<Vec3>>,
+    /// Names of the groups whose numbers the values are; empty for a field.
+    pub groups: &'a [Group],
     /// Colours.
     pub colours: ColourMap,
     /// Field values of the first and the last colour; the field's own extremes by default. Values
@@ -68,6 +70,7 @@ impl<'a> ParticlePlot<'a> {
             cells: &[],
             walls: Vec::new(),
             undeformed: Vec::new(),
+            groups: &[],
             colours: ColourMap::default(),
             range: None,
             window: None,
