@@ -106,7 +106,7 @@ pub(super) fn pack(folder: &Path, report: &Report<'_>) -> Result<PackedFrames, O
             .push((format!("frame-{}", packed.index.kept.len()), text));
         packed.index.kept.push(kept);
     }
-    if let Some((ranges, text)) = plan.reference(&last)? {
+    if let Some(Reference { ranges, text }) = plan.reference(&last)? {
         packed.index.reference = ranges;
         packed.pieces.push(("reference".to_owned(), text));
     }
@@ -170,15 +170,8 @@ impl<'a> Plan<'a> {
             plan.frames = plan.affordable(last, total, budget)?;
         }
         if plan.frames < enough {
-            let whole: Vec<ReportField> = report.fields.clone();
-            let main = whole.iter().filter(|field| !field.is_component);
-            let names: Vec<&str> = main.map(|field| field.name.as_str()).collect();
-            plan.fields = sources(&report.fields, last, axes)
-                .into_iter()
-                .filter(|(field, source)| {
-                    names.contains(&field.name.as_str()) && *source == Source::Stored
-                })
-                .collect();
+            plan.fields
+                .retain(|(field, source)| !field.is_component && *source == Source::Stored);
             plan.frames = plan.affordable(last, total, budget)?;
         }
         Ok(plan)
@@ -238,11 +231,8 @@ impl<'a> Plan<'a> {
         Ok((kept, text(planes)?))
     }
 
-    /// Undeformed positions, if a displacement is among the fields.
-    fn reference(
-        &self,
-        frame: &StoredFrame,
-    ) -> Result<Option<(Vec<[f64; 2]>, String)>, OutputError> {
+    /// Undeformed positions and their extremes, if a displacement is among the fields.
+    fn reference(&self, frame: &StoredFrame) -> Result<Option<Reference>, OutputError> {
         let is_displacement = |source: &Source| matches!(source, Source::Displacement(_));
         let Some(displacement) = frame.vector("displacement") else {
             return Ok(None);
@@ -263,8 +253,15 @@ impl<'a> Plan<'a> {
             planes.push(&values, range, self.width);
             ranges.push(range);
         }
-        Ok(Some((ranges, text(planes)?)))
+        let text = text(planes)?;
+        Ok(Some(Reference { ranges, text }))
     }
+}
+
+/// The undeformed positions as text.
+struct Reference {
+    ranges: Vec<[f64; 2]>,
+    text: String,
 }
 
 /// Where the values of the fields come from that a frame has.
@@ -388,13 +385,25 @@ mod tests {
     }
 
     fn frame(particles: u32) -> StoredFrame {
-        // Digits without a pattern that could be compressed.
-        let noise = |i: u32| f64::from(i.wrapping_mul(2_654_435_761)) / 4.3e9;
-        let vector = |i: u32| Vec3::new(noise(i), noise(i + 7), 0.0);
+        // Digits without a pattern that could be compressed: murmur3's finaliser of a counter.
+        let mut count = 0_u32;
+        let mut noise = || {
+            count += 1;
+            let mut word = count.wrapping_mul(0x9e37_79b9);
+            word = (word ^ word >> 16).wrapping_mul(0x85eb_ca6b);
+            word = (word ^ word >> 13).wrapping_mul(0xc2b2_ae35);
+            f64::from(word ^ word >> 16) / f64::from(u32::MAX)
+        };
+        let mut vectors = || -> Vec<Vec3> {
+            let vector = |_| Vec3::new(noise(), noise(), 0.0);
+            (0..particles).map(vector).collect()
+        };
+        let (positions, velocity, pressure) = (vectors(), vectors(), vectors());
+        let pressure = pressure.iter().map(|vector| vector.x).collect();
         StoredFrame {
-            positions: (0..particles).map(vector).collect(),
-            scalars: vec![("pressure".to_owned(), (0..particles).map(noise).collect())],
-            vectors: vec![("velocity".to_owned(), (0..particles).map(vector).collect())],
+            positions,
+            scalars: vec![("pressure".to_owned(), pressure)],
+            vectors: vec![("velocity".to_owned(), velocity)],
             ..StoredFrame::default()
         }
     }

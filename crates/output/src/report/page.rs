@@ -97,7 +97,10 @@ pub(super) fn page(
 ) -> serde_json::Result<String> {
     let data = Data {
         // The copy of a case in a results folder has another name than the case.
-        case: files.summary.as_ref().map_or(report.case, |summary| &summary.case),
+        case: files
+            .summary
+            .as_ref()
+            .map_or(report.case, |summary| &summary.case),
         heading: report.heading,
         version: env!("CARGO_PKG_VERSION"),
         is_solid: report.is_solid,

@@ -39,7 +39,7 @@ function showSummary() {
     const { energies, extremes } = summary;
     const joule = DATA.energy_unit;
     tables.append(table("Run", [
-      ["status", status],
+      ["status", status, ""],
       ["simulated time", ...shownValue(summary.simulated_time, "s")],
       ["steps", whole(summary.steps), ""],
       ["particles", whole(summary.particles), ""],
@@ -50,11 +50,11 @@ function showSummary() {
     ]));
     const kinds = ["kinetic", "elastic", "plastic", "numerical", "hourglass", "external", "contact"];
     const scale = scaleFor(joule, Math.max(...kinds.map((kind) => Math.abs(energies[kind] ?? 0))));
-    const fixed = (value) => (value === null ? "\u2013" : (value * scale.factor).toFixed(3).replace("-", "\u2212"));
+    const fixed = (value) => (value === null ? "\u2013" : tickText(value * scale.factor, 3));
     const names = { external: "work of loads", contact: "work of obstacles" };
     tables.append(table("Energies at the end", [
       ...kinds.map((kind) => [names[kind] ?? kind, fixed(energies[kind]), scale.unit]),
-      ["balance, of the largest", energies.balance === null ? "\u2013" : (100 * energies.balance).toFixed(4).replace("-", "\u2212"), "%"],
+      ["balance, of the largest", energies.balance === null ? "\u2013" : tickText(100 * energies.balance, 4), "%"],
     ]));
     const values = Object.entries(summary.probes);
     const known = values.filter(([, value]) => value !== null);
@@ -70,7 +70,7 @@ function showSummary() {
     ]));
   }
   if (record) {
-    tables.append(table("How it was run", [
+    const run = table("How it was run", [
       ["version", record.version + (record.commit ? ` (${record.commit})` : "")],
       ["command", record.command.join(" ")],
       ["machine", [record.machine.cpu, record.machine.os].filter(Boolean).join(", ")],
@@ -78,7 +78,9 @@ function showSummary() {
       ["started", record.start_time],
       ["ended", record.end_time ?? "not yet, or killed"],
       ["because", record.exit_reason ?? "\u2013"],
-    ]));
+    ]);
+    run.className = "wide";
+    tables.append(run);
   }
   const warnings = summary?.warnings ?? [];
   if (warnings.length > 0) {

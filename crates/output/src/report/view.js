@@ -28,6 +28,7 @@ class View {
     this.number = this.frames.count - 1;
     this.mapChoice = "";
     this.picked = null;
+    this.side = 1;
     this.isPlaying = false;
     this.isWaiting = false;
   }
@@ -165,8 +166,9 @@ class View {
     const axis = Number(choice);
     const { low, high } = this.camera.bounds;
     const at = low[axis] + Number(element("clip-at").value) * (high[axis] - low[axis]);
-    const sign = element("clip-flip").checked ? -1 : 1;
-    const plane = [0, 0, 0, sign * at];
+    const sign = element("clip-flip").checked ? -this.side : this.side;
+    // Layers that lie on the plane, but for rounding, are shown as a whole.
+    const plane = [0, 0, 0, sign * at + 0.01 * DATA.spacing];
     plane[axis] = sign;
     return plane;
   }
@@ -201,9 +203,12 @@ class View {
   #tell(px, py) {
     const { index } = this.picked;
     const length = scaleFor("m", this.camera.size);
+    // About a millionth of the picture, for all three alike.
+    const decimals = Math.max(0, 5 - exponentOf(this.camera.size * length.factor));
     const rows = [["particle", String(index)]];
     ["x", "y", "z"].slice(0, DATA.frames.axes).forEach((name, axis) => {
-      rows.push([name, `${digits(this.frame.positions[3 * index + axis] * length.factor)} ${length.unit}`]);
+      const value = this.frame.positions[3 * index + axis] * length.factor;
+      rows.push([name, `${tickText(value, decimals)} ${length.unit}`]);
     });
     rows.push([this.field.label, `${digits(this.values[index] * this.scale.factor)} ${this.scale.unit}`.trim()]);
     const tip = element("tip");
@@ -329,7 +334,12 @@ class View {
 
     on("field", "change", (event) => this.chooseField(Number(event.target.value)));
     on("map", "change", (event) => { this.mapChoice = event.target.value; this.#colours(); this.redraw(); });
-    for (const id of ["shape", "clip"]) on(id, "change", redraw);
+    on("shape", "change", redraw);
+    on("clip", "change", (event) => {
+      // What is towards the reader goes.
+      this.side = this.camera.rows[6 + Number(event.target.value)] >= 0 ? 1 : -1;
+      redraw();
+    });
     for (const id of ["size", "clip-at"]) on(id, "input", redraw);
     for (const id of ["mesh", "walls", "undeformed", "clip-flip"]) on(id, "change", redraw);
     const typed = () => {
