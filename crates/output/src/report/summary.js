@@ -48,10 +48,10 @@ function showSummary() {
       ["wall-clock time", duration(summary.wall_seconds), ""],
       ["particle steps per second", digits(summary.particle_steps_per_second, 4), "1/s"],
     ]));
-    const kinds = ["kinetic", "elastic", "plastic", "numerical", "hourglass", "external", "contact"];
+    const kinds = Object.keys(energies).filter((kind) => kind !== "balance");
     const scale = scaleFor(joule, Math.max(...kinds.map((kind) => Math.abs(energies[kind] ?? 0))));
     const fixed = (value) => (value === null ? "\u2013" : tickText(value * scale.factor, 3));
-    const names = { external: "work of loads", contact: "work of obstacles" };
+    const names = { external: "work of loads", contact: "work of obstacles", plastic: "plastic dissipation", friction: "dissipated by friction" };
     tables.append(table("Energies at the end", [
       ...kinds.map((kind) => [names[kind] ?? kind, fixed(energies[kind]), scale.unit]),
       ["balance, of the largest", energies.balance === null ? "\u2013" : tickText(100 * energies.balance, 4), "%"],
