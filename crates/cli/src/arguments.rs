@@ -26,6 +26,8 @@ pub(crate) enum Command {
     Check(CheckOptions),
     /// Draw the results of a run: the body coloured by a field, or curves over time
     Plot(PlotOptions),
+    /// Write one HTML file with the numbers, curves and an interactive view of a run
+    Report(ReportOptions),
     /// List what can be written in a case file: materials, kernels, shapes, units, ...
     List {
         /// Which list; without it, the lists there are
@@ -106,6 +108,17 @@ pub(crate) struct PlotOptions {
     #[arg(long, value_name = "WHAT", conflicts_with_all = ["field", "times", "range", "view", "section"])]
     pub(crate) history: Option<String>,
     /// File to write, .png or .svg [default: OUT_DIR/NAME-TIME.png]
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+/// Options of `report`.
+#[derive(Debug, Args)]
+pub(crate) struct ReportOptions {
+    /// Folder with the results of a run
+    #[arg(value_name = "OUT_DIR")]
+    pub(crate) results: PathBuf,
+    /// File to write [default: OUT_DIR/report.html]
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
 }

@@ -1,10 +1,11 @@
 //! `jstsph plot`, and the pictures at the end of a run.
 
-mod body;
-mod field;
+pub(crate) mod body;
+pub(crate) mod diagrams;
+pub(crate) mod field;
 mod frames;
-mod history;
-mod lines;
+pub(crate) mod history;
+pub(crate) mod lines;
 mod setup;
 
 use std::path::{Path, PathBuf};
@@ -102,7 +103,7 @@ fn save(figure: &Figure, path: &Path) -> Result<(), CliError> {
 }
 
 /// The title of a figure: what the case is.
-fn heading(case: &Case) -> &str {
+pub(crate) fn heading(case: &Case) -> &str {
     if case.title.is_empty() {
         &case.name
     } else {

@@ -128,7 +128,8 @@ pub(crate) fn verdict(
     };
     let _ = writeln!(
         text,
-        "  next: jstsph plot {folder} --field von_mises_stress --time first,last"
+        "  next: jstsph report {folder}   (one page with curves and a view to turn and play)\n        \
+         jstsph plot {folder} --field von_mises_stress --time first,last"
     );
     text
 }

@@ -36,7 +36,7 @@ fn a_run_ends_with_pictures_unless_they_are_not_wanted() {
         assert!(outcome.out.contains(name), "{}", outcome.out);
     }
     assert!(
-        outcome.out.contains("next: jstsph plot "),
+        outcome.out.contains("next: jstsph report "),
         "{}",
         outcome.out
     );

@@ -16,7 +16,6 @@ use crate::{OutputError, iso8601};
 const CASE: &str = "case.toml";
 const HISTORY: &str = "history.csv";
 const LOG: &str = "run.log";
-const REPORT: &str = "report.html";
 const FRAMES: &str = "frames";
 const RESTART: &str = "restart";
 
@@ -27,6 +26,9 @@ pub struct ResultsFolder {
 }
 
 impl ResultsFolder {
+    /// Name of the report in the folder.
+    pub const REPORT: &str = "report.html";
+
     /// Prepares a folder for a new run: creates it with its parents and the folders for frames and
     /// restart files, and tests that files can be written.
     ///
@@ -109,7 +111,7 @@ impl ResultsFolder {
 
     /// The report.
     pub fn report(&self) -> PathBuf {
-        self.path.join(REPORT)
+        self.path.join(Self::REPORT)
     }
 
     /// Appends a message to `run.log`, each of its lines after the time in UTC.
@@ -159,7 +161,9 @@ impl ResultsFolder {
         })?;
         // The marks of a results folder go last: an interrupted removal can be repeated.
         remove_matching(&self.path, |name, path| {
-            [HISTORY, CASE, REPORT].contains(&name) || is_temporary(name) || is_picture(name, path)
+            [HISTORY, CASE, Self::REPORT].contains(&name)
+                || is_temporary(name)
+                || is_picture(name, path)
         })?;
         remove_matching(&self.path, |name, _| [RECORD, SUMMARY, LOG].contains(&name))
     }

@@ -34,6 +34,7 @@
 
 mod atomic;
 mod clock;
+mod component;
 mod error;
 mod folder;
 mod frame;
@@ -42,6 +43,7 @@ mod history;
 mod json;
 pub mod plot;
 mod record;
+pub mod report;
 mod restart;
 mod stored;
 mod summary;

@@ -16,10 +16,10 @@ const SAME_LAYER: f64 = 1e-4;
 
 /// What the body is seen from, and whether it is cut open.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Sight {
+pub(crate) struct Sight {
     /// Axes to the right, up and along the view; `None` for the oblique view.
-    pub(super) plane: Option<[usize; 3]>,
-    pub(super) is_cut: bool,
+    pub(crate) plane: Option<[usize; 3]>,
+    pub(crate) is_cut: bool,
 }
 
 impl Sight {
@@ -256,7 +256,7 @@ fn sheet(reference: &[Vec3], layer: &[usize], axes: [usize; 3], spacing: f64) ->
 }
 
 /// Lowest and highest coordinates.
-pub(super) fn box_of<'a>(points: impl Iterator<Item = &'a Vec3>) -> (Vec3, Vec3) {
+pub(crate) fn box_of<'a>(points: impl Iterator<Item = &'a Vec3>) -> (Vec3, Vec3) {
     let start = (Vec3::repeat(f64::MAX), Vec3::repeat(f64::MIN));
     points.fold(start, |(low, high), x| (low.inf(x), high.sup(x)))
 }

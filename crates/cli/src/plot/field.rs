@@ -5,9 +5,6 @@ use jstsph_output::plot::{ColourMap, Quantity};
 
 use crate::error::CliError;
 
-/// Suffixes of the components of vectors and tensors.
-const AXES: [&str; 3] = ["x", "y", "z"];
-
 /// Part of the largest magnitude from which a sign counts as more than noise.
 const BOTH_SIGNS: f64 = 0.02;
 
@@ -17,52 +14,15 @@ const BOTH_SIGNS: f64 = 0.02;
 /// # Errors
 /// [`CliError::UnknownName`] with the names there are.
 pub(super) fn values(frame: &StoredFrame, name: &str) -> Result<Vec<f64>, CliError> {
-    find(frame, name).ok_or_else(|| CliError::UnknownName {
+    frame.values(name).ok_or_else(|| CliError::UnknownName {
         what: "field",
         name: name.to_owned(),
-        allowed: names(frame),
+        allowed: frame.value_names(),
     })
 }
 
-fn find(frame: &StoredFrame, name: &str) -> Option<Vec<f64>> {
-    if let Some(values) = frame.scalar(name) {
-        return Some(values.to_vec());
-    }
-    if let Some(vectors) = frame.vector(name) {
-        return Some(vectors.iter().map(|vector| vector.norm()).collect());
-    }
-    let (base, suffix) = name.rsplit_once('_')?;
-    if let Some(vectors) = frame.vector(base) {
-        let axis = AXES.iter().position(|axis| *axis == suffix)?;
-        return Some(vectors.iter().map(|vector| vector[axis]).collect());
-    }
-    let (row, column) = component(suffix)?;
-    let tensors = frame.tensor(base)?;
-    Some(tensors.iter().map(|tensor| tensor[(row, column)]).collect())
-}
-
-fn component(suffix: &str) -> Option<(usize, usize)> {
-    let index = |letter: &str| AXES.iter().position(|axis| *axis == letter);
-    Some((index(suffix.get(..1)?)?, index(suffix.get(1..)?)?))
-}
-
-/// Every name that [`values`] knows.
-fn names(frame: &StoredFrame) -> Vec<String> {
-    let mut names: Vec<String> = frame.scalars.iter().map(|(name, _)| name.clone()).collect();
-    for (name, _) in &frame.vectors {
-        names.push(name.clone());
-        names.extend(AXES.map(|axis| format!("{name}_{axis}")));
-    }
-    for (name, _) in &frame.tensors {
-        for row in AXES {
-            names.extend(AXES.map(|column| format!("{name}_{row}{column}")));
-        }
-    }
-    names
-}
-
 /// Name and SI unit as shown.
-pub(super) fn quantity(frame: &StoredFrame, name: &str) -> Quantity {
+pub(crate) fn quantity(frame: &StoredFrame, name: &str) -> Quantity {
     let base = name.rsplit_once('_').map_or(name, |(base, _)| base);
     let is_component = frame.vector(base).is_some() || frame.tensor(base).is_some();
     let unit = match if is_component { base } else { name } {
@@ -143,7 +103,7 @@ mod tests {
         );
         assert!(message.contains("von_mises_stress, velocity, velocity_x"));
         assert!(message.contains("did you mean `velocity_x`?"), "{message}");
-        for name in names(&frame) {
+        for name in frame.value_names() {
             assert!(values(&frame, &name).is_ok(), "{name}");
         }
         for name in [

@@ -38,13 +38,14 @@ pub(super) fn figure(case: &Case, table: &Table, what: &str) -> Result<(Figure, 
     Ok((figure, format!("{name}.png")))
 }
 
-struct History<'a> {
-    case: &'a Case,
-    table: &'a Table,
+/// The table of a run with what the case says about its columns.
+pub(crate) struct History<'a> {
+    pub(crate) case: &'a Case,
+    pub(crate) table: &'a Table,
 }
 
 impl History<'_> {
-    fn energies(&self) -> Result<LinePlot, CliError> {
+    pub(super) fn energies(&self) -> Result<LinePlot, CliError> {
         let stored = [
             "kinetic",
             "elastic",
@@ -86,7 +87,7 @@ impl History<'_> {
         })
     }
 
-    fn balance(&self) -> Result<LinePlot, CliError> {
+    pub(super) fn balance(&self) -> Result<LinePlot, CliError> {
         let mut percent = self.column("energy_balance")?;
         percent.iter_mut().for_each(|value| *value *= 100.0);
         Ok(LinePlot {
@@ -97,7 +98,7 @@ impl History<'_> {
         })
     }
 
-    fn time_step(&self) -> Result<LinePlot, CliError> {
+    pub(super) fn time_step(&self) -> Result<LinePlot, CliError> {
         let mut steps = self.column("dt")?;
         // Before the first step there is none.
         steps.iter_mut().for_each(|dt| {
@@ -114,7 +115,7 @@ impl History<'_> {
     }
 
     /// Numbers over time, and lines of points as profiles at the last time they have values.
-    fn probes(&self) -> Result<Vec<LinePlot>, CliError> {
+    pub(super) fn probes(&self) -> Result<Vec<LinePlot>, CliError> {
         let mut numbers = Vec::new();
         let mut profiles = Vec::new();
         for probe in &self.case.probes {
@@ -185,7 +186,7 @@ impl History<'_> {
     }
 
     /// One diagram for each unit among the columns, in their order.
-    fn by_unit(&self, names: &[&str]) -> Result<Vec<LinePlot>, CliError> {
+    pub(super) fn by_unit(&self, names: &[&str]) -> Result<Vec<LinePlot>, CliError> {
         let mut plots: Vec<LinePlot> = Vec::new();
         for name in names {
             let unit = self.unit(name);
@@ -242,7 +243,7 @@ impl History<'_> {
     }
 
     /// SI unit of a column, empty for a pure number.
-    fn unit(&self, name: &str) -> String {
+    pub(crate) fn unit(&self, name: &str) -> String {
         if let Some(column) = HISTORY_COLUMNS.iter().find(|column| column.name == name) {
             return match column.unit {
                 "-" => String::new(),
@@ -273,7 +274,7 @@ impl History<'_> {
     }
 
     /// A unit of a whole body: per metre of thickness in plane strain.
-    fn per_thickness(&self, unit: &str) -> String {
+    pub(crate) fn per_thickness(&self, unit: &str) -> String {
         match self.case.model.dimension {
             Dimension::PlaneStrain => format!("{unit}/m"),
             Dimension::Solid => unit.to_owned(),

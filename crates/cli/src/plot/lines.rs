@@ -24,8 +24,25 @@ pub(super) fn walls(
     case: &Case,
     sight: Sight,
     middle: &Vec3,
-    (mut low, mut high): (Vec3, Vec3),
+    corners: (Vec3, Vec3),
     time: f64,
+) -> Vec<Wall> {
+    let obstacles = case.model.obstacles.iter();
+    obstacles
+        .flat_map(|obstacle| {
+            let shift = displacement(obstacle, time);
+            walls_of(obstacle, sight, middle, corners, &shift)
+        })
+        .collect()
+}
+
+/// Outlines of an obstacle that has moved by `shift`.
+pub(crate) fn walls_of(
+    obstacle: &ModelObstacle,
+    sight: Sight,
+    middle: &Vec3,
+    (mut low, mut high): (Vec3, Vec3),
+    shift: &Vec3,
 ) -> Vec<Wall> {
     let size = (high - low).norm();
     // In a view along an axis lines may reach as far as any picture, which cuts them off; the
@@ -41,17 +58,15 @@ pub(super) fn walls(
         low[normal] = middle[normal];
         high[normal] = middle[normal];
     }
-    let mut walls = Vec::new();
-    for obstacle in &case.model.obstacles {
-        let shift = displacement(obstacle, time);
-        let surface = &obstacle.obstacle.surface;
-        let is_solid = |x: &Vec3| surface.gap(&(x - shift)).distance < 0.0;
-        for line in surface.outline(&[low - shift, high - shift]) {
+    let surface = &obstacle.obstacle.surface;
+    let is_solid = |x: &Vec3| surface.gap(&(x - shift)).distance < 0.0;
+    let lines = surface.outline(&[low - shift, high - shift]).into_iter();
+    lines
+        .map(|line| {
             let line: Vec<Vec3> = line.iter().map(|x| x + shift).collect();
-            walls.push(oriented(line, sight, middle, size, is_solid));
-        }
-    }
-    walls
+            oriented(line, sight, middle, size, is_solid)
+        })
+        .collect()
 }
 
 /// The line with the solid to its right, if it is on one side all along.
@@ -97,7 +112,7 @@ fn oriented(
 }
 
 /// How far an obstacle has moved at `time` (s): its velocity, integrated with the midpoint rule.
-fn displacement(obstacle: &ModelObstacle, time: f64) -> Vec3 {
+pub(crate) fn displacement(obstacle: &ModelObstacle, time: f64) -> Vec3 {
     let Some(velocity) = &obstacle.velocity else {
         return Vec3::zeros();
     };
@@ -113,7 +128,7 @@ fn displacement(obstacle: &ModelObstacle, time: f64) -> Vec3 {
 }
 
 /// Outlines of the undeformed bodies; none in the oblique view.
-pub(super) fn undeformed(case: &Case, sight: Sight) -> Vec<Vec<Vec3>> {
+pub(crate) fn undeformed(case: &Case, sight: Sight) -> Vec<Vec<Vec3>> {
     let Some([right, up, normal]) = sight.plane else {
         return Vec::new();
     };
