@@ -2,7 +2,7 @@ use jstsph_tensor::{Vec3, cofactor};
 
 use super::*;
 use crate::Simulation;
-use crate::model::Integrator;
+use crate::model::{Formulation, Integrator};
 use crate::testing::{QUADRATURES, copper, elastic, in_pool, model, scheme};
 
 /// Moduli of [`elastic`], Pa.
