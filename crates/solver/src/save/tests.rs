@@ -23,6 +23,7 @@ fn models(nodes: [usize; 3]) -> Vec<Model> {
                         }),
                         upwind: 0.05,
                         hourglass: 0.01,
+                        viscosity: None,
                     };
                 }
                 models.push(impact(nodes, scheme));
