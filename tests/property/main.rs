@@ -6,4 +6,5 @@ mod displacement;
 mod energy_balance;
 mod heat;
 mod invariance;
+mod orientation;
 mod tumbling;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use jstsph_solver::Model;
+use jstsph_solver::{Model, Simulation};
 use jstsph_tensor::{Mat3, Vec3};
 
 use crate::saved::first_piola_stress;
@@ -46,12 +46,39 @@ impl Errors {
 pub const ERRORS: [&str; 2] = ["velocity", "stress"];
 
 impl StandingWave {
+    fn run(&self, periods: f64) -> (Simulation, f64) {
+        let phase = periods * 2.0 * PI;
+        let end = phase / self.frequency;
+        (setup::run(self.model.clone(), end), phase)
+    }
+
+    /// Relative L2 errors of the stress over the points for which `inside(X)` holds, and over the others.
+    #[must_use]
+    pub fn stress_errors_after(self, periods: f64, inside: impl Fn(&Vec3) -> bool) -> [f64; 2] {
+        let (simulation, phase) = self.run(periods);
+        let displacement = self.amplitude * phase.sin();
+        let reference = simulation.reference();
+        let stresses = first_piola_stress(&simulation);
+        [true, false].map(|wanted| {
+            let squares = stresses
+                .iter()
+                .zip(&reference.point_position)
+                .map(|(stress, x)| {
+                    let exact = (self.stress)(x) * displacement;
+                    let chosen = f64::from(u8::from(inside(x) == wanted));
+                    (
+                        chosen * (stress - exact).norm_squared(),
+                        chosen * exact.norm_squared(),
+                    )
+                });
+            relative_error(squares, &reference.point_volume)
+        })
+    }
+
     /// Runs over `periods` and compares.
     #[must_use]
     pub fn errors_after(self, periods: f64) -> Errors {
-        let end = periods * 2.0 * PI / self.frequency;
-        let simulation = setup::run(self.model, end);
-        let phase = self.frequency * end;
+        let (simulation, phase) = self.run(periods);
         let speed = self.amplitude * self.frequency * phase.cos();
         let displacement = self.amplitude * phase.sin();
         let reference = simulation.reference();

@@ -21,6 +21,7 @@ pub fn particles(smoothing_ratio: f64) -> Scheme {
         smoothing_ratio,
         smoothing_reference: SmoothingReference::Spacing,
         weights: Weights::Interpolation,
+        boundary_correction: false,
         formulation: Formulation::MomentumGradientCofactorJacobian,
         integrator: Integrator::Leapfrog,
         cfl: 0.5,
@@ -61,6 +62,15 @@ pub fn displacement(smoothing_ratio: f64) -> Scheme {
     }
 }
 
+/// The scheme with the gradient made to sum by parts.
+#[must_use]
+pub fn corrected(scheme: Scheme) -> Scheme {
+    Scheme {
+        boundary_correction: true,
+        ..scheme
+    }
+}
+
 /// Axis-parallel box from the origin with nodes on its faces; `intervals` cells along each axis.
 /// One of two axes in plane strain.
 #[must_use]
@@ -86,6 +96,38 @@ pub fn block_at(
     };
     let spacing = Spacing::Counts(intervals.map(|n| n + 1));
     build_body(shape, Lattice::Cubic { spacing }, dimension).expect("the box is valid")
+}
+
+/// The body with its inner nodes moved by up to `amount` spacings along each axis, the same every
+/// time; bonds follow their ends, volumes stay those of the lattice.
+#[must_use]
+pub fn jittered(mut body: Body, amount: f64) -> Body {
+    let axes = body.dimension.count();
+    // SplitMix64 (Steele, Lea & Flood 2014), in [-1, 1).
+    let mut seed = 7u64;
+    let mut number = || {
+        seed = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = seed;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^= z >> 31;
+        (z >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    };
+    for (position, boundary) in body.positions.iter_mut().zip(&body.boundary) {
+        let mut shift = Vec3::zeros();
+        for i in 0..axes {
+            shift[i] = amount * body.spacing * number();
+        }
+        if !boundary {
+            *position += shift;
+        }
+    }
+    if let Some(bonds) = &mut body.bonds {
+        for (midpoint, [a, b]) in bonds.midpoints.iter_mut().zip(&bonds.ends) {
+            *midpoint = (body.positions[*a as usize] + body.positions[*b as usize]) * 0.5;
+        }
+    }
+    body
 }
 
 /// Neo-Hookean rubber of the swinging plate and cube: E = 17 MPa, ρ = 1100 kg/m³.

@@ -17,6 +17,12 @@ fn radius_and_length_are_those_of_the_literature_without_any_dissipation() {
     let fine = bar(3);
     // 2 % beside the converged radius; the bar of the case is 0.4 mm shorter than that of the length.
     assert_within("radius, m", fine.probe("base_radius"), 7.08e-3..=7.36e-3);
+    // Independent of how the lattice meets the rim: 7.25 mm here, 7.33 to 7.36 mm for 2009 to 10,579.
+    assert_within(
+        "radius of the edge, m",
+        fine.probe("base_edge_radius"),
+        7.18e-3..=7.42e-3,
+    );
     assert_within("length, m", fine.probe("length"), 21.0e-3..=21.5e-3);
     assert_within(
         "largest plastic strain",
@@ -54,4 +60,21 @@ fn nothing_is_below_the_wall() {
         .fold(f64::INFINITY, f64::min);
     let spacing = finished.simulation.reference().bodies[0].spacing;
     assert!(lowest > -1e-3 * spacing, "lowest particle at {lowest} m");
+}
+
+#[test]
+fn radius_of_the_undeformed_edge_is_that_of_the_cylinder() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../cases/taylor-bar.toml");
+    for per_radius in [2, 3, 5, 6] {
+        let lattice = format!("{{ per_radius = {per_radius}, layers = 4 }}");
+        let overrides = [("body.bar.lattice".to_owned(), lattice)];
+        let case = jstsph_case::load(path.as_ref(), &overrides).expect("a valid case");
+        let simulation = jstsph_solver::Simulation::new(case.model).expect("a valid model");
+        let fields = simulation.particle_fields();
+        for name in ["base_radius", "base_edge_radius"] {
+            let probe = case.probes.iter().find(|probe| probe.name == name);
+            let radius = simulation.probe(probe.expect("the case has it"), &fields)[0];
+            assert!((radius / 3.2e-3 - 1.0).abs() < 1e-14, "{name}: {radius} m");
+        }
+    }
 }

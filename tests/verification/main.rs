@@ -2,7 +2,9 @@
 
 mod breathing_disc;
 mod conduction;
+mod constitutive;
 mod longitudinal_wave;
+mod operators;
 mod patch;
 mod sliding_block;
 mod swinging_cube;

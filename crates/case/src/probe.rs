@@ -1,7 +1,7 @@
 //! `[[probe]]`: numbers read off the running simulation.
 
-use jstsph_geometry::Dimension;
-use jstsph_solver::{ModelBody, Probe, ProbeKind};
+use jstsph_geometry::{Dimension, Shape, face_areas};
+use jstsph_solver::{EdgePart, ModelBody, Probe, ProbeKind};
 use jstsph_tensor::Vec3;
 
 use crate::document::Node;
@@ -26,7 +26,14 @@ pub(crate) fn read_probe(
         return Err(section.problem("name", format!("two probes are called `{name}`")));
     }
     section.rename(format!("probe.{name}"));
-    let form = section.one_of(&["extent", "radius", "statistic", "point", "line"])?;
+    let form = section.one_of(&[
+        "extent",
+        "radius",
+        "edge_radius",
+        "statistic",
+        "point",
+        "line",
+    ])?;
     let field = section.need(form)?;
     let mut part = Section::open(&field.node, &field.path, field.kind.keys())?;
     let kind = match form {
@@ -37,12 +44,12 @@ pub(crate) fn read_probe(
         "radius" => ProbeKind::Radius {
             particles: particles(&mut part, bodies, dimension)?,
             axis: part.choice("axis", AXES)?,
-            point: if part.has("point") {
-                part.vector("point", dimension)?
-            } else {
-                part.record("point", components(&Vec3::zeros(), dimension));
-                Vec3::zeros()
-            },
+            point: point_or_origin(&mut part, dimension)?,
+        },
+        "edge_radius" => ProbeKind::EdgeRadius {
+            edge: edge(&mut part, bodies, dimension)?,
+            axis: part.choice("axis", AXES)?,
+            point: point_or_origin(&mut part, dimension)?,
         },
         "statistic" => ProbeKind::Statistic {
             particles: particles(&mut part, bodies, dimension)?,
@@ -71,18 +78,54 @@ fn axis(part: &mut Section<'_>, dimension: Dimension) -> Result<usize, Problem> 
     part.choice("axis", &AXES[..dimension.count()])
 }
 
-/// Selected particles as indices into the whole simulation.
-fn particles(
+fn point_or_origin(part: &mut Section<'_>, dimension: Dimension) -> Result<Vec3, Problem> {
+    if part.has("point") {
+        return part.vector("point", dimension);
+    }
+    part.record("point", components(&Vec3::zeros(), dimension));
+    Ok(Vec3::zeros())
+}
+
+/// Selected particles on the round face of their body, with the way to the true surface.
+fn edge(
     part: &mut Section<'_>,
     bodies: &[ModelBody],
     dimension: Dimension,
-) -> Result<Vec<u32>, Problem> {
+) -> Result<Vec<EdgePart>, Problem> {
     let selected = read_where(part, bodies, dimension)?;
-    let before: usize = bodies[..selected.body]
+    let first = first_particle(part, bodies, selected.body)?;
+    let body = &bodies[selected.body].body;
+    let round = match body.shape {
+        Shape::Disc { .. } => "rim",
+        _ => "side",
+    };
+    // A box has no such face.
+    let areas = face_areas(body, round).unwrap_or_default();
+    let edge: Vec<EdgePart> = areas
+        .iter()
+        .filter(|area| selected.particles.binary_search(&area.node).is_ok())
+        .map(|area| EdgePart {
+            particle: first + area.node,
+            arm: area.point - body.positions[area.node as usize],
+            weight: area.area,
+        })
+        .collect();
+    if edge.is_empty() {
+        return Err(part.problem(
+            "where",
+            "an edge radius needs particles on the rim of a disc or the side of a cylinder",
+        ));
+    }
+    Ok(edge)
+}
+
+/// Index of the first particle of a body in the whole simulation.
+fn first_particle(part: &Section<'_>, bodies: &[ModelBody], body: usize) -> Result<u32, Problem> {
+    let before: usize = bodies[..body]
         .iter()
         .map(|body| body.body.positions.len())
         .sum();
-    let first = u32::try_from(before).map_err(|_| {
+    u32::try_from(before).map_err(|_| {
         part.problem(
             "where",
             format!(
@@ -90,6 +133,16 @@ fn particles(
                 u32::MAX
             ),
         )
-    })?;
+    })
+}
+
+/// Selected particles as indices into the whole simulation.
+fn particles(
+    part: &mut Section<'_>,
+    bodies: &[ModelBody],
+    dimension: Dimension,
+) -> Result<Vec<u32>, Problem> {
+    let selected = read_where(part, bodies, dimension)?;
+    let first = first_particle(part, bodies, selected.body)?;
     Ok(selected.particles.iter().map(|a| a + first).collect())
 }

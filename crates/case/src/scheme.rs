@@ -91,6 +91,7 @@ pub(crate) fn read_scheme(
         reference,
     )?;
     let weights = section.choice("weights", schema::WEIGHTS)?;
+    let boundary_correction = section.flag("boundary_correction")?;
     let projection = section.flag_or("projection", !bonds)?;
     let reference_frame = formulation != Formulation::EulerianKernel;
     let (stabilisation, resolved) = read_stabilisation(stabilisation, bonds || !reference_frame)?;
@@ -100,6 +101,7 @@ pub(crate) fn read_scheme(
         smoothing_ratio,
         smoothing_reference,
         weights,
+        boundary_correction,
         formulation,
         integrator: time.integrator,
         cfl: time.settings.cfl,

@@ -64,12 +64,20 @@ fn describe(case: &Case, mut simulation: Simulation, threads: usize) -> String {
         );
         // How far a constant stress is from giving no force inside: an error that does not converge.
         let inner = |a: usize| !input.body.boundary[a];
-        let _ = writeln!(
+        let _ = write!(
             text,
             "    smoothing length {:.4e} m; summation by parts holds to {:.1e} of a face inside",
             body.support.smoothing_length,
             reference.summation_defect(index, inner)
         );
+        let _ = match body.correction {
+            Some(correction) => writeln!(
+                text,
+                " after {} rows of the gradient were corrected",
+                correction.points
+            ),
+            None => writeln!(text),
+        };
     }
     for condition in &case.model.conditions {
         let _ = writeln!(

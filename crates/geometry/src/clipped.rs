@@ -78,7 +78,7 @@ pub(crate) fn build(shape: Shape, round: &Round, n: usize, layers: usize) -> Bod
             n,
             layers,
         }
-        .all(&grid),
+        .all(&grid, &positions),
         positions,
         shape,
     }
@@ -103,7 +103,7 @@ struct Faces<'a> {
 }
 
 impl Faces<'_> {
-    fn all(&self, grid: &Grid) -> Vec<Face> {
+    fn all(&self, grid: &Grid, positions: &[Vec3]) -> Vec<Face> {
         let step = self.round.radius / self.n as f64;
         let side = self.round.radius * self.round.layer_spacing(self.layers);
         let mut rim = vec![None; (2 * self.n + 1).pow(2)];
@@ -115,7 +115,12 @@ impl Faces<'_> {
         let last = self.layers - 1;
         let (mut base, mut top, mut round) = (Vec::new(), Vec::new(), Vec::new());
         let (mut rim_base, mut rim_top) = (Vec::new(), Vec::new());
-        for (node, point) in grid.points().iter().enumerate() {
+        let axis = self.round.vector(0.0, 0.0, 1.0);
+        let centre = self
+            .round
+            .vector(1.0, 1.0, 0.0)
+            .component_mul(&self.round.origin);
+        for (node, (point, position)) in grid.points().iter().zip(positions).enumerate() {
             let node = node as u32;
             let (i, j) = (
                 point[first] as i64 - self.n as i64,
@@ -126,6 +131,7 @@ impl Faces<'_> {
                 node,
                 area: step * step * self.section.node_area(i, j),
                 normal: self.round.vector(0.0, 0.0, direction),
+                point: *position,
             };
             if at_base {
                 base.push(end(-1.0));
@@ -142,6 +148,7 @@ impl Faces<'_> {
                     node,
                     area: angle * side * part,
                     normal,
+                    point: centre + normal * self.round.radius + axis.component_mul(position),
                 });
             }
             // Only nodes on the circle itself, so that their mean radius is the body's: four or

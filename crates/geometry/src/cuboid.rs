@@ -75,6 +75,7 @@ pub(crate) fn build(shape: Shape, counts: [usize; 3], dimension: Dimension) -> B
                     node: node as u32,
                     area: full * across.map(|i| part(point, i)).product::<f64>(),
                     normal,
+                    point: positions[node],
                 }
             })
             .collect();

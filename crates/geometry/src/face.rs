@@ -13,6 +13,9 @@ pub struct FaceArea {
     pub area: f64,
     /// Outward unit normal; on a curved face the one in the middle of the tributary area.
     pub normal: Vec3,
+    /// Point of the face where it acts, m: the node itself where that lies on the face; on the side
+    /// of a round body cut out of a cubic lattice the middle of the tributary arc at its height.
+    pub point: Vec3,
 }
 
 /// A named face or edge, filled in when the body is built.

@@ -53,7 +53,8 @@ pub(crate) fn build(
         for point in &section {
             let node = positions.len() as u32;
             let [x, y] = point.offset;
-            positions.push(round.origin + round.vector(x, y, height));
+            let place = round.origin + round.vector(x, y, height);
+            positions.push(place);
             volumes.push(point.area * layer * part);
             weights.push(point.full_area * layer);
             boundary.push(point.outer || at_end);
@@ -61,6 +62,7 @@ pub(crate) fn build(
                 node,
                 area: point.area,
                 normal: round.vector(0.0, 0.0, direction),
+                point: place,
             };
             if at_base {
                 faces.base.push(end(-1.0));
@@ -73,6 +75,7 @@ pub(crate) fn build(
                     node,
                     area: arc * layer * part,
                     normal: round.vector(x / round.radius, y / round.radius, 0.0),
+                    point: place,
                 });
                 if at_base {
                     faces.rim_base.push(node);

@@ -19,6 +19,7 @@ fn scheme(quadrature: Quadrature, integrator: Integrator) -> Scheme {
         smoothing_ratio: if bonds { 0.8 } else { 1.2 },
         smoothing_reference: SmoothingReference::Spacing,
         weights: Weights::Interpolation,
+        boundary_correction: false,
         formulation: Formulation::MomentumGradientCofactorJacobian,
         integrator,
         cfl: 0.3,

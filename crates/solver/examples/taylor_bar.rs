@@ -75,6 +75,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 SmoothingReference::Volume
             },
             weights: Weights::Interpolation,
+            boundary_correction: false,
             formulation: Formulation::MomentumGradientCofactorJacobian,
             integrator: Integrator::Leapfrog,
             cfl,

@@ -38,6 +38,7 @@
 //!         smoothing_ratio: 0.8,
 //!         smoothing_reference: SmoothingReference::Spacing,
 //!         weights: Weights::Interpolation,
+//!         boundary_correction: false,
 //!         formulation: Formulation::MomentumGradientCofactorJacobian,
 //!         integrator: Integrator::Leapfrog,
 //!         cfl: 0.5,
@@ -59,6 +60,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod boundary;
 mod consistency;
 mod constraint;
 mod dissipation;
@@ -93,7 +95,7 @@ pub use model::{
     ModelBody, ModelObstacle, ObstacleHeat, Quadrature, Scheme, Signal, SignalFunction,
     SmoothingReference, Stabilisation, Viscosity, Weights,
 };
-pub use probe::{Field, Probe, ProbeKind, Statistic};
+pub use probe::{EdgePart, Field, Probe, ProbeKind, Statistic};
 pub use reference::{BodyReference, Reference, Shares};
 pub use save::Saved;
 pub use simulation::Simulation;

@@ -337,6 +337,9 @@ pub struct Scheme {
     pub smoothing_reference: SmoothingReference,
     /// Interpolation weights.
     pub weights: Weights,
+    /// Whether the gradient is changed near the boundary so that it sums by parts, on bodies where it
+    /// does not do so by itself: round ones, irregular ones, wide supports. docs/theory.md.
+    pub boundary_correction: bool,
     /// Which unknowns are integrated.
     pub formulation: Formulation,
     /// Time integration.

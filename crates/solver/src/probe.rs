@@ -68,6 +68,17 @@ pub enum ProbeKind {
         /// Axis of the line.
         axis: usize,
     },
+    /// Mean current distance of an edge of a body from a fixed line, m: every node of the edge is
+    /// carried to the true edge by its deformation gradient, x + F (X_edge − X), so that the answer does
+    /// not depend on how far inside of it the nodes of a staircase lie.
+    EdgeRadius {
+        /// Parts of the edge.
+        edge: Vec<EdgePart>,
+        /// A point of the line.
+        point: Vec3,
+        /// Axis of the line.
+        axis: usize,
+    },
     /// A statistic of a field over particles.
     Statistic {
         /// Particles.
@@ -96,6 +107,17 @@ pub enum ProbeKind {
         /// Field.
         field: Field,
     },
+}
+
+/// Part of an edge that belongs to one particle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EdgePart {
+    /// The particle, an index into the whole simulation.
+    pub particle: u32,
+    /// From the particle to the true edge in the undeformed body, m.
+    pub arm: Vec3,
+    /// Length or area of the part, in any unit.
+    pub weight: f64,
 }
 
 impl crate::Simulation {
@@ -128,13 +150,19 @@ impl crate::Simulation {
             } => {
                 let total: f64 = particles
                     .iter()
-                    .map(|&a| {
-                        let mut arm = position[a as usize] - point;
-                        arm[*axis] = 0.0;
-                        arm.norm()
-                    })
+                    .map(|&a| distance(&position[a as usize], point, *axis))
                     .sum();
                 vec![total / particles.len() as f64]
+            }
+            ProbeKind::EdgeRadius { edge, point, axis } => {
+                let (mut sum, mut total) = (0.0, 0.0);
+                for part in edge {
+                    let a = part.particle as usize;
+                    let place = position[a] + fields.deformation_gradient[a] * part.arm;
+                    sum += part.weight * distance(&place, point, *axis);
+                    total += part.weight;
+                }
+                vec![sum / total]
             }
             ProbeKind::Statistic {
                 particles,
@@ -229,4 +257,11 @@ impl crate::Simulation {
         }
         sum / total
     }
+}
+
+/// Distance of a place from the line through `point` along an axis, m.
+fn distance(place: &Vec3, point: &Vec3, axis: usize) -> f64 {
+    let mut arm = place - point;
+    arm[axis] = 0.0;
+    arm.norm()
 }

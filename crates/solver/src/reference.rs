@@ -3,10 +3,11 @@
 use std::ops::Range;
 
 use jstsph_geometry::{Cells, Dimension};
-use jstsph_sph::{GradientOperator, PairOperator, Support};
+use jstsph_sph::{Correction, GradientOperator, PairOperator, Support};
 use jstsph_tensor::{Mat3, Vec3};
 
 use crate::SolverError;
+use crate::boundary;
 use crate::model::{Laplacian, Model, ModelBody, Quadrature, Scheme, SmoothingReference, Weights};
 
 /// Particles, points and operators of all bodies in the undeformed state.
@@ -52,6 +53,11 @@ pub struct BodyReference {
     pub support: Support,
     /// The operator B from particles to points.
     pub gradient: GradientOperator,
+    /// What Σ_q V_q B_qc should be for every particle, m²: the boundary as its area vectors, zero
+    /// away from it.
+    pub area_vectors: Vec<Vec3>,
+    /// How B was made to sum by parts, where it did not do so by itself.
+    pub correction: Option<Correction>,
     /// Laplacian of the JST dissipation, when it is used.
     pub laplacian: Option<PairOperator>,
     /// Symmetric pair weights of upwind dissipation and hourglass stiffness, when they are used.
@@ -194,6 +200,17 @@ impl Reference {
                 (gradient, bonds.ends.clone(), shares)
             }
         };
+        let area_vectors = boundary::area_vectors(body, weights, &support).map_err(failed)?;
+        let (gradient, correction) = if scheme.boundary_correction {
+            boundary::corrected(
+                gradient,
+                body,
+                &self.point_volume[first_point..],
+                &area_vectors,
+            )
+        } else {
+            (gradient, None)
+        };
         // Half of each bond to each end: masses follow from the same volumes as the stresses.
         let volume: Vec<f64> = match scheme.quadrature {
             Quadrature::Particles => body.volumes.clone(),
@@ -249,6 +266,8 @@ impl Reference {
             spacing: body.spacing,
             support,
             gradient,
+            area_vectors,
+            correction,
             laplacian,
             pairs,
             ends,
@@ -269,20 +288,18 @@ impl Reference {
         entries as f64 / self.point_volume.len() as f64
     }
 
-    /// Largest defect of summation by parts, |Σ_q V_q B_qa| over the particles of a body for which
-    /// `inner(a)` holds, in units of one lattice face area: zero when a constant stress gives no force
-    /// on inner particles. docs/theory.md lists what to expect.
+    /// Largest defect of summation by parts, |Σ_q V_q B_qa − N_a| over the particles of a body for which
+    /// `chosen(a)` holds, in units of one lattice face area: zero when a constant stress gives no force
+    /// inside and the exact traction at the boundary. docs/theory.md lists what to expect.
     #[must_use]
-    pub fn summation_defect(&self, body: usize, inner: impl Fn(usize) -> bool) -> f64 {
+    pub fn summation_defect(&self, body: usize, chosen: impl Fn(usize) -> bool) -> f64 {
         let body = &self.bodies[body];
-        let face = body.spacing.powi(self.dimension.count() as i32 - 1);
-        body.gradient
-            .boundary_vectors(&self.point_volume[body.points.clone()])
-            .iter()
-            .enumerate()
-            .filter(|(a, _)| inner(*a))
-            .map(|(_, vector)| vector.norm() / face)
-            .fold(0.0, f64::max)
+        boundary::largest_defect(
+            &body.gradient,
+            &self.point_volume[body.points.clone()],
+            &body.area_vectors,
+            chosen,
+        ) / body.spacing.powi(self.dimension.count() as i32 - 1)
     }
 
     /// The body that owns an evaluation point, and the index within it.

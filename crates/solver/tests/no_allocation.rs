@@ -79,6 +79,7 @@ fn model(quadrature: Quadrature, integrator: Integrator, formulation: Formulatio
             smoothing_ratio: 0.9,
             smoothing_reference: SmoothingReference::Spacing,
             weights: Weights::Interpolation,
+            boundary_correction: false,
             formulation,
             integrator,
             cfl: 0.3,

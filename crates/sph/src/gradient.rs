@@ -6,6 +6,10 @@ use jstsph_tensor::{Mat3, Vec3};
 use crate::rows::Rows;
 use crate::{Kernel, SphError};
 
+mod conforming;
+
+pub use conforming::Correction;
+
 /// Largest accepted condition number of a moment matrix. Corners of lattices have about 3; above
 /// this the correction would amplify round-off and noise instead of restoring consistency.
 const CONDITION_LIMIT: f64 = 1e6;
@@ -55,6 +59,8 @@ impl Support {
 pub struct GradientOperator {
     rows: Rows<[f64; 3]>,
     columns: Rows<[f64; 3]>,
+    /// Size of the entries, one over the smoothing length.
+    scale: f64,
     plane: bool,
 }
 
@@ -196,6 +202,7 @@ impl GradientOperator {
         Ok(Self {
             rows,
             columns,
+            scale,
             plane: support.dimension == 2,
         })
     }

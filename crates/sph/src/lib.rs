@@ -30,7 +30,7 @@ mod rows;
 #[cfg(test)]
 mod testing;
 
-pub use gradient::{GradientOperator, Support};
+pub use gradient::{Correction, GradientOperator, Support};
 pub use interpolation::interpolate;
 pub use kernel::Kernel;
 pub use pairs::PairOperator;

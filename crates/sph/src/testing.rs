@@ -63,6 +63,19 @@ pub(crate) fn jittered_box(nodes: usize, dimension: usize) -> Body {
     body
 }
 
+/// A box whose inner nodes are moved by up to a fifth of the spacing along each axis.
+pub(crate) fn inside_jittered_box(nodes: usize, dimension: usize) -> Body {
+    let mut body = unit_box(nodes, dimension);
+    let mut random = Random(5);
+    for (position, boundary) in body.positions.iter_mut().zip(&body.boundary) {
+        let shift = random.vector_in(dimension) * (0.2 * body.spacing);
+        if !boundary {
+            *position += shift;
+        }
+    }
+    body
+}
+
 /// The default kernel with h = `ratio` spacings.
 pub(crate) fn support_of(body: &Body, ratio: f64) -> Support {
     Support {

@@ -287,6 +287,12 @@ pub const PROBE: &[Key] = &[
         "mean distance of a selection from a line",
     ),
     key(
+        "edge_radius",
+        Table(RADIUS),
+        Optional,
+        "mean radius of the edge of a disc or cylinder where a selection meets it",
+    ),
+    key(
         "statistic",
         Table(STATISTIC),
         Optional,

@@ -94,6 +94,12 @@ pub const SCHEME: &[Key] = &[
         "weights of the gradient sum: full cells (second order) or tributary volumes (the paper's)",
     ),
     key(
+        "boundary_correction",
+        Flag,
+        Default("false"),
+        "whether the gradient is changed near the boundary, where needed, so that it sums by parts",
+    ),
+    key(
         "projection",
         Flag,
         Derived("false for bonds, true for particles"),

@@ -254,7 +254,9 @@ impl History<'_> {
         for probe in &self.case.probes {
             if Simulation::probe_columns(probe).iter().any(|c| c == name) {
                 return match &probe.kind {
-                    ProbeKind::Extent { .. } | ProbeKind::Radius { .. } => "m",
+                    ProbeKind::Extent { .. }
+                    | ProbeKind::Radius { .. }
+                    | ProbeKind::EdgeRadius { .. } => "m",
                     ProbeKind::Statistic { field, .. }
                     | ProbeKind::Point { field, .. }
                     | ProbeKind::Line { field, .. } => described(*field).1,
