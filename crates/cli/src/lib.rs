@@ -26,6 +26,7 @@ mod list;
 mod plot;
 mod progress;
 mod recorder;
+mod reproduce;
 mod restart;
 mod simulate;
 mod templates;
@@ -81,6 +82,7 @@ where
         Command::Run(options) => simulate::run(&options, &words, &mut console, interrupted),
         Command::Check(options) => check::run(&options, &mut console),
         Command::Plot(options) => plot::run(&options, &mut console),
+        Command::Reproduce(options) => reproduce::run(&options, &words, &mut console, interrupted),
         Command::List { what } => list::run(what.as_deref(), &mut console),
         Command::New { name } => templates::run(name.as_deref(), &mut console),
     };
