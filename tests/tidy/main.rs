@@ -2,6 +2,8 @@
 
 mod cases;
 mod crates;
+mod documents;
+mod equations;
 mod sources;
 
 use std::path::{Path, PathBuf};
