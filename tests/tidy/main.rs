@@ -4,6 +4,7 @@ mod cases;
 mod crates;
 mod documents;
 mod equations;
+mod reproduction;
 mod sources;
 
 use std::path::{Path, PathBuf};

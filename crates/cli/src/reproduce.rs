@@ -1,6 +1,7 @@
 //! `jstsph reproduce`: runs every case of a published study and compares with what it reports.
 
 mod findings;
+mod frame;
 mod html;
 mod judge;
 mod markdown;
@@ -41,7 +42,10 @@ pub(crate) fn run(
     let study = Study::named(name)?;
     if let Some(file) = &options.from {
         let findings = Findings::read(&study, file)?;
-        console.print(markdown::text(&page::blocks(&study, &findings)));
+        console.print(format_args!(
+            "<!-- Written by `jstsph reproduce {name} --from FILE`; do not edit. -->\n\n{}",
+            markdown::text(&page::blocks(&study, &findings))
+        ));
         return Ok(0);
     }
     if let Some(id) = options.only.iter().find(|id| study.run(id).is_none()) {

@@ -147,6 +147,15 @@ fn with_unit(value: &str, unit: &str) -> String {
     }
 }
 
+/// What is measured, with its unit.
+pub(super) fn labelled(quantity: &Quantity) -> String {
+    if quantity.unit.is_empty() {
+        quantity.measured.clone()
+    } else {
+        format!("{}, {}", quantity.measured, quantity.unit)
+    }
+}
+
 fn quantity_blocks(blocks: &mut Vec<Block>, quantity: &Quantity, found: &QuantityFinding) {
     blocks.push(Block::Heading(3, quantity.title.clone()));
     blocks.push(Block::Text(format!(
@@ -160,20 +169,11 @@ fn quantity_blocks(blocks: &mut Vec<Block>, quantity: &Quantity, found: &Quantit
         .max()
         .unwrap_or(0);
     let is_number = matches!(quantity.expect, Expectation::Value { .. });
-    let measured = with_unit(&quantity.measured, &quantity.unit);
-    let measured = measured.replace(
-        &format!(" {}", quantity.unit),
-        &format!(", {}", quantity.unit),
-    );
     let mut table = head(&["", "particles"]);
     if values > 1 {
         table.extend((1..=values).map(|point| point.to_string()));
     } else {
-        table.push(if quantity.unit.is_empty() {
-            quantity.measured.clone()
-        } else {
-            measured
-        });
+        table.push(labelled(quantity));
     }
     if is_number {
         table.push("difference".to_owned());
@@ -198,7 +198,7 @@ fn quantity_blocks(blocks: &mut Vec<Block>, quantity: &Quantity, found: &Quantit
         rows: references.chain(ours).collect(),
     });
     if values > 1 {
-        blocks.push(Block::Text(format!("Columns: {}.", quantity.measured)));
+        blocks.push(Block::Text(format!("Columns: {}.", labelled(quantity))));
     }
     if !quantity.reason.is_empty() {
         let heading = match found.verdict {

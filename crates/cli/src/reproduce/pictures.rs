@@ -7,6 +7,7 @@ use jstsph_output::plot::{Figure, LinePlot, Quantity as Axis, Scale, Series, Ser
 
 use super::findings::{Drawn, QuantityFinding, series};
 use super::measure::Results;
+use super::page::labelled;
 use super::study::{Picture, Quantity};
 use crate::arguments::{Look, ValueRange};
 use crate::error::CliError;
@@ -134,12 +135,4 @@ fn convergence(quantity: &Quantity, found: &QuantityFinding) -> Option<LinePlot>
         series: curves,
         ..LinePlot::default()
     })
-}
-
-fn labelled(quantity: &Quantity) -> String {
-    if quantity.unit.is_empty() {
-        quantity.measured.clone()
-    } else {
-        format!("{}, {}", quantity.measured, quantity.unit)
-    }
 }
