@@ -70,7 +70,9 @@ pub(super) struct QuantityFinding {
     pub(super) title: String,
     pub(super) source: String,
     pub(super) paper: String,
-    /// Of the values below.
+    /// What the values below are.
+    pub(super) measured: String,
+    /// Their unit.
     pub(super) unit: String,
     /// That of the first row, or of its scheme.
     pub(super) verdict: Verdict,
@@ -164,7 +166,9 @@ impl Findings {
             let found = found.ok_or_else(|| format!("quantity `{}` is missing", quantity.id))?;
             let runs = found.rows.iter().map(|row| &row.run);
             let known = |id: &&String| self.runs.iter().any(|run| run.id == **id);
-            if !runs.eq(quantity.runs.iter().filter(known)) || found.unit != quantity.unit {
+            if !runs.eq(quantity.runs.iter().filter(known))
+                || (&found.measured, &found.unit) != (&quantity.measured, &quantity.unit)
+            {
                 return Err(format!("quantity `{}` has changed", quantity.id));
             }
             *found = QuantityFinding::new(quantity, std::mem::take(&mut found.rows));
@@ -257,6 +261,7 @@ impl QuantityFinding {
             title: quantity.title.clone(),
             source: quantity.source.clone(),
             paper: quantity.paper.clone(),
+            measured: quantity.measured.clone(),
             unit: quantity.unit.clone(),
             verdict: rows.first().map_or(Verdict::NotRun, |row| row.verdict),
             reason: quantity.reason.clone(),
