@@ -14,26 +14,23 @@ fn ids(text: &str) -> Vec<String> {
         .collect()
 }
 
-/// Lines of a Markdown text that stand in fenced blocks.
-fn fenced(text: &str) -> String {
-    let mut is_inside = false;
-    let mut lines = String::new();
-    for line in text.lines() {
-        if line.starts_with("```") {
-            is_inside = !is_inside;
-        } else if is_inside {
-            lines += line;
-            lines.push('\n');
-        }
-    }
-    lines
-}
-
-/// How often each id stands at a formula of the manual.
+/// How often each id stands at a formula of the manual: in a fenced block, apart from the formula, at the
+/// end of a line or before the paper's number. Elsewhere an id is a mention.
 fn defined() -> BTreeMap<String, usize> {
+    let manual = read(&root().join("docs/theory.md"));
+    let mut is_fenced = false;
     let mut defined = BTreeMap::new();
-    for id in ids(&fenced(&read(&root().join("docs/theory.md")))) {
-        *defined.entry(id).or_insert(0) += 1;
+    for line in manual.lines() {
+        is_fenced ^= line.starts_with("```");
+        let Some((_, named)) = line.split_once("  [eq:") else {
+            continue;
+        };
+        let Some((id, rest)) = named.split_once(']') else {
+            continue;
+        };
+        if is_fenced && (rest.trim().is_empty() || rest.trim().starts_with('(')) {
+            *defined.entry(id.to_owned()).or_insert(0) += 1;
+        }
     }
     assert!(defined.len() > 20, "only {} formulas found", defined.len());
     defined

@@ -25,7 +25,7 @@ pub struct Energies {
     /// Work of obstacles so far (negative: they took energy): of the contact law, and of friction
     /// at the velocity of the obstacle.
     pub contact: f64,
-    /// Energy dissipated by friction at obstacles so far.
+    /// Energy dissipated by friction at obstacles so far, `[eq:friction-energy]`.
     pub friction: f64,
     /// Heat content above that of the start.
     pub thermal: f64,
