@@ -2,6 +2,9 @@
 
 mod cases;
 mod crates;
+mod documents;
+mod equations;
+mod reproduction;
 mod sources;
 
 use std::path::{Path, PathBuf};

@@ -70,7 +70,8 @@ fn fillets(facts: &Facts<'_>, found: &mut Vec<String>) {
 }
 
 /// Two-stage TVD Runge-Kutta amplifies an undamped wave of frequency ω by |G|² = 1 + (ω dt)⁴/4 per
-/// step; the fourth-order dissipation of long waves balances it from κ⁽⁴⁾ = cfl³/4 on.
+/// step; the fourth-order dissipation of long waves balances it from κ⁽⁴⁾ = cfl³/4 on:
+/// `[eq:rk2-growth]`, `[eq:rk2-limit]`.
 fn runge_kutta_growth(model: &Model, found: &mut Vec<String>) {
     let Some(jst) = model.scheme.stabilisation.jst else {
         return;

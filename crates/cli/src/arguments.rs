@@ -28,6 +28,8 @@ pub(crate) enum Command {
     Plot(PlotOptions),
     /// Write one HTML file with the numbers, curves and an interactive view of a run
     Report(ReportOptions),
+    /// Run every case of a published study and compare with what it reports
+    Reproduce(ReproduceOptions),
     /// List what can be written in a case file: materials, kernels, shapes, units, ...
     List {
         /// Which list; without it, the lists there are
@@ -121,6 +123,31 @@ pub(crate) struct ReportOptions {
     /// File to write [default: OUT_DIR/report.html]
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
+}
+
+/// Options of `reproduce`.
+#[derive(Debug, Args)]
+pub(crate) struct ReproduceOptions {
+    /// Which study; without it, the studies there are
+    pub(crate) study: Option<String>,
+    /// Folder for runs and page [default: results/reproduce-STUDY, with -quick after it for --quick]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Coarse resolutions: minutes instead of an hour
+    #[arg(long)]
+    pub(crate) quick: bool,
+    /// Threads of each run [default: 1 below 20,000 evaluation points, else all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) threads: Option<u16>,
+    /// Only these runs of the study; the others are reported as not run unless finished earlier
+    #[arg(long, value_name = "RUN", value_delimiter = ',')]
+    pub(crate) only: Vec<String>,
+    /// Also reuse finished runs of the same case that another version of the program made
+    #[arg(long)]
+    pub(crate) any_version: bool,
+    /// Run nothing: print the page, as Markdown, of an earlier reproduction.json
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["out", "quick", "threads", "only", "any_version"])]
+    pub(crate) from: Option<PathBuf>,
 }
 
 /// How a body is shown.

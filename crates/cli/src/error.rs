@@ -104,6 +104,17 @@ pub(crate) enum CliError {
         /// SI unit of the field.
         unit: String,
     },
+    /// A study's data file, or the numbers for it, do not fit.
+    #[error("{name}: {reason}")]
+    Study {
+        /// The study, or the file.
+        name: String,
+        /// What does not fit.
+        reason: String,
+    },
+    /// The page of a study cannot be written.
+    #[error(transparent)]
+    Page(OutputError),
     /// Threads cannot be started.
     #[error("cannot start {threads} threads: {reason}; give a smaller number with --threads")]
     Threads {
@@ -138,7 +149,7 @@ impl CliError {
     /// 2 for wrong input, 1 for a run that failed.
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
-            Self::Writing { .. } | Self::Failed { .. } => 1,
+            Self::Writing { .. } | Self::Failed { .. } | Self::Page(_) => 1,
             _ => 2,
         }
     }

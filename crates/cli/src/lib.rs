@@ -27,6 +27,7 @@ mod plot;
 mod progress;
 mod recorder;
 mod report;
+mod reproduce;
 mod restart;
 mod simulate;
 mod templates;
@@ -83,6 +84,7 @@ where
         Command::Check(options) => check::run(&options, &mut console),
         Command::Plot(options) => plot::run(&options, &mut console),
         Command::Report(options) => report::run(&options, &mut console),
+        Command::Reproduce(options) => reproduce::run(&options, &words, &mut console, interrupted),
         Command::List { what } => list::run(what.as_deref(), &mut console),
         Command::New { name } => templates::run(name.as_deref(), &mut console),
     };

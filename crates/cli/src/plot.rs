@@ -77,6 +77,26 @@ pub(crate) fn before_run(case: &Case, view: Option<ViewName>, path: &Path) -> Re
     save(&setup::figure(case, view)?, path)
 }
 
+/// Draws a body at several times side by side into a file.
+pub(crate) fn draw_body(
+    results: &Path,
+    field: &str,
+    times: &[String],
+    look: &Look,
+    path: &Path,
+) -> Result<(), CliError> {
+    let case = jstsph_case::load(&results.join("case.toml"), &[])?;
+    let chosen = frames::choose(results, times)?;
+    save(&body::figure(&case, &chosen, field, look)?, path)
+}
+
+/// Draws curves of `history.csv` into a file; `what` as in `--history`.
+pub(crate) fn draw_history(results: &Path, what: &str, path: &Path) -> Result<(), CliError> {
+    let case = jstsph_case::load(&results.join("case.toml"), &[])?;
+    let table = read_table(&results.join("history.csv")).map_err(CliError::Picture)?;
+    save(&history::figure(&case, &table, what)?.0, path)
+}
+
 /// How a picture is written.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Format {

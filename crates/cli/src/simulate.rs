@@ -39,14 +39,25 @@ pub(crate) fn run(
     interrupted: &AtomicBool,
 ) -> Result<u8, CliError> {
     let case = jstsph_case::load(&options.case, &options.overrides)?;
-    let columns = extra_columns(&case)?;
-    let (pool, threads) = pool(&case, options.threads)?;
+    run_case(&case, options, command, console, interrupted)
+}
+
+/// Simulates a case that is already read, and writes.
+pub(crate) fn run_case(
+    case: &Case,
+    options: &RunOptions,
+    command: &[OsString],
+    console: &mut Console<'_>,
+    interrupted: &AtomicBool,
+) -> Result<u8, CliError> {
+    let columns = extra_columns(case)?;
+    let (pool, threads) = pool(case, options.threads)?;
     pool.install(|| {
         let simulation =
             Simulation::new(case.model.clone()).map_err(|error| case.setup_error(&error))?;
         let job = Job {
             options,
-            case: &case,
+            case,
             columns: &columns,
             threads,
             command,

@@ -7,7 +7,7 @@ use crate::{ContactError, Wall};
 /// Coulomb friction between particles and an obstacle, without regularisation: a touching particle
 /// sticks to the wall exactly, or slides against the full friction.
 ///
-/// Source: Moreau 1988 (impulses of unilateral contact with dry friction); docs/theory.md.
+/// `[eq:friction]`. Source: Moreau 1988 (impulses of unilateral contact with dry friction); docs/theory.md.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Friction {
     /// Largest impulse along the wall over the normal one; 0 is no friction.

@@ -11,13 +11,13 @@ pub enum Law {
     ///
     /// With restitution 0 and particles *on* the wall counted as touching it, the energy balance
     /// of a body that slides along a wall closes; the paper's reflection leaves a gap in it (see
-    /// docs/theory.md).
+    /// docs/theory.md, `[eq:inelastic]`).
     Inelastic {
         /// Part of the approach speed with which a touching particle leaves, 0 to 1.
         restitution: f64,
     },
     /// Bounce-back: a particle found in the wall is put on it, and its momentum into the wall is
-    /// mirrored. Greto & Kulasegaram 2019, Sect. 4.3.
+    /// mirrored, `[eq:reflection]`. Greto & Kulasegaram 2019, Sect. 4.3.
     Reflection,
 }
 

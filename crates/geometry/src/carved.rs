@@ -81,7 +81,7 @@ pub(crate) fn build(
     };
     let is_cell = lattice.full_cells(&grid);
     let boundary = exposed::boundary(&lattice, &grid, &is_cell);
-    let faces = exposed::faces(&lattice, &grid, &is_cell);
+    let faces = exposed::faces(&lattice, &grid, &is_cell, &positions);
     Ok(Body {
         dimension,
         volumes: node_volumes,

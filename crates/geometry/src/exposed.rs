@@ -37,7 +37,12 @@ pub(crate) fn boundary(lattice: &Lattice<'_>, grid: &Grid, is_cell: &[bool]) -> 
 }
 
 /// The faces of the bounding box and all that faces one way.
-pub(crate) fn faces(lattice: &Lattice<'_>, grid: &Grid, is_cell: &[bool]) -> Vec<Face> {
+pub(crate) fn faces(
+    lattice: &Lattice<'_>,
+    grid: &Grid,
+    is_cell: &[bool],
+    positions: &[Vec3],
+) -> Vec<Face> {
     let mut nodes = vec![u32::MAX; lattice.counts.iter().product()];
     for (node, &point) in grid.points().iter().enumerate() {
         nodes[lattice.flat(point)] = node as u32;
@@ -58,6 +63,7 @@ pub(crate) fn faces(lattice: &Lattice<'_>, grid: &Grid, is_cell: &[bool]) -> Vec
             let side = Side {
                 lattice,
                 nodes: &nodes,
+                positions,
                 axis,
                 is_upper,
             };
@@ -79,6 +85,8 @@ struct Side<'a> {
     lattice: &'a Lattice<'a>,
     /// Node of each lattice point, if it has one.
     nodes: &'a [u32],
+    /// Positions of the nodes, m.
+    positions: &'a [Vec3],
     axis: usize,
     is_upper: bool,
 }
@@ -109,6 +117,7 @@ impl Side<'_> {
                     node,
                     area,
                     normal: self.normal(),
+                    point: self.positions[node as usize],
                 })
             })
             .collect();

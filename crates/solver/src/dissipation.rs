@@ -1,4 +1,5 @@
-//! Artificial dissipation of momentum and Jacobian: JST (3.12)-(3.13) and upwind.
+//! Artificial dissipation of momentum and Jacobian: JST (3.12)-(3.13), `[eq:harmonic]`,
+//! `[eq:biharmonic]`, and upwind, `[eq:upwind]`.
 
 use jstsph_tensor::Vec3;
 

@@ -1,4 +1,4 @@
-//! Energies, their balance, and momenta.
+//! Energies, their balance, `[eq:balance]`, and momenta.
 
 use jstsph_tensor::{Vec3, double_dot};
 
@@ -25,7 +25,7 @@ pub struct Energies {
     /// Work of obstacles so far (negative: they took energy): of the contact law, and of friction
     /// at the velocity of the obstacle.
     pub contact: f64,
-    /// Energy dissipated by friction at obstacles so far.
+    /// Energy dissipated by friction at obstacles so far, `[eq:friction-energy]`.
     pub friction: f64,
     /// Heat content above that of the start.
     pub thermal: f64,
@@ -90,7 +90,7 @@ impl Energies {
     }
 }
 
-/// The quantities of Greto & Kulasegaram 2019, (4.1), for one time step, so that its figures can
+/// The quantities of Greto & Kulasegaram 2019, (4.1), `[eq:paper-energies]`, for one time step, so that its figures can
 /// be redrawn. The paper's formulae lack the volume; here every particle counts with its own.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PaperEnergies {

@@ -1,4 +1,4 @@
-//! Internal force (3.10), hourglass stiffness, and external forces.
+//! Internal force (3.10), `[eq:force]`, hourglass stiffness, and external forces.
 
 use jstsph_tensor::{Mat3, Vec3};
 
@@ -50,7 +50,7 @@ pub(crate) fn average_to_particles(
     }
 }
 
-/// Adds the hourglass stiffness to the internal force: the negative gradient of its energy
+/// Adds the hourglass stiffness `[eq:hourglass]` to the internal force: the negative gradient of its energy
 ///
 /// ```text
 ///   E = ¼ ζ μ Σ_ab V_a V_b w_ab |r_ab|² ,   r_ab = x_b − x_a − ½ (F_a + F_b)(X_b − X_a)

@@ -17,7 +17,7 @@ pub(crate) enum Kick {
     Closing,
 }
 
-/// One step of the leapfrog:
+/// One step of the leapfrog, `[eq:leapfrog]`:
 ///
 /// ```text
 ///   xⁿ⁺¹ = xⁿ + Δt pⁿ⁺½/ρ ,  F, H, J to n+1 with G(pⁿ⁺½)

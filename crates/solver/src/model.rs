@@ -278,7 +278,7 @@ pub enum Laplacian {
 pub enum Biharmonic {
     /// The same everywhere.
     Constant(f64),
-    /// Falls linearly with the equivalent plastic strain and stays at its final value (4.2).
+    /// Falls linearly with the equivalent plastic strain and stays at its final value (4.2), `[eq:falling-coefficient]`.
     FallingWithPlasticStrain {
         /// Value at zero plastic strain.
         initial: f64,

@@ -46,8 +46,8 @@ impl std::ops::Add for Moments {
 /// volume-weighted norm, so that on every body Σ V f = 0 and Σ V y × f = 0, with the lever arm
 /// `lever(a)` of particle a.
 ///
-/// Greto & Kulasegaram 2019, (3.15). The discrete angular momentum of the time integration is
-/// conserved exactly when the lever arms are those of docs/theory.md: xⁿ in the leapfrog and in
+/// `[eq:projection]`: Greto & Kulasegaram 2019, (3.15). The discrete angular momentum of the time integration is
+/// conserved exactly when the lever arms are those of docs/theory.md, `[eq:lever-arms]`: xⁿ in the leapfrog and in
 /// the first stage of TVD-RK2, xⁿ⁺¹ in the second.
 pub(crate) fn conserve(
     reference: &Reference,

@@ -258,7 +258,7 @@ impl Simulation {
     }
 
     /// Internal force, stabilisation and loads of the present state; the torque of the internal
-    /// ones is taken out about `lever`.
+    /// ones is taken out about `lever`. `[eq:momentum]`, `[eq:semi-discrete]`.
     pub(crate) fn forces(&mut self, lever: impl Fn(&State, usize) -> Vec3 + Sync) {
         let stabilisation = &self.scheme.stabilisation;
         match &mut self.eulerian {

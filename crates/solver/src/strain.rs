@@ -1,4 +1,5 @@
-//! Strain measures: velocity gradient (3.11a) and the evolution of F, H and J (3.14).
+//! Strain measures: velocity gradient (3.11a) and the evolution of F, H and J (3.14):
+//! `[eq:strain]`, `[eq:cofactor]`, `[eq:jacobian]`; with bonds `[eq:bond-volume]`.
 
 use jstsph_tensor::{Mat3, cofactor, double_dot, tensor_cross};
 

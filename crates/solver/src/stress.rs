@@ -140,7 +140,7 @@ impl BlockVisitor for Evaluation<'_> {
                         stress.m11 += pressure;
                         stress.m22 += pressure;
                         stress.m33 += pressure;
-                        // P = σ H with σ = τ/J (A.4); with bonds τ F⁻ᵀ, conjugate to tr(G F⁻¹).
+                        // [eq:piola]: P = σ H with σ = τ/J (A.4); with bonds τ F⁻ᵀ, conjugate to tr(G F⁻¹).
                         let jacobian = if at_particles {
                             now.jacobian
                         } else {
@@ -255,7 +255,7 @@ impl BlockReader for ElasticEnergy<'_> {
     }
 }
 
-/// Elastic energy of all bodies with the committed history, J.
+/// Elastic energy of all bodies with the committed history, J; with bonds `[eq:bond-energy]`.
 pub(crate) fn elastic_energy(
     strains: Strains,
     reference: &Reference,

@@ -1,4 +1,4 @@
-//! The stable time step (3.17).
+//! The stable time step (3.17), `[eq:time-step]`.
 
 use jstsph_tensor::{Mat3, double_dot, largest_eigenvalue, norm_squared};
 

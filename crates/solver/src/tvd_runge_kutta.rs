@@ -1,4 +1,4 @@
-//! Two-stage TVD Runge-Kutta (3.16), the paper's integrator.
+//! Two-stage TVD Runge-Kutta (3.16), `[eq:tvd-rk2]`, the paper's integrator.
 
 use crate::constraint::Stage;
 use crate::model::Formulation;

@@ -74,7 +74,7 @@ impl GradientOperator {
     ///   B_ab = w_b L_a ∇W_ab ,  B_aa = −Σ_b B_ab ,  L_a = (Σ_b w_b ∇W_ab ⊗ (X_b − X_a))⁻¹
     /// ```
     ///
-    /// Greto & Kulasegaram 2019, (3.6) and (3.10), with interpolation weights w in place of the
+    /// `[eq:gradient]`: Greto & Kulasegaram 2019, (3.6) and (3.10), with interpolation weights w in place of the
     /// volumes V: a full cell for every particle of a lattice makes the scheme second order;
     /// passing the tributary volumes gives the paper's first-order form. docs/theory.md.
     ///
@@ -125,7 +125,7 @@ impl GradientOperator {
     ///   L_q = (Σ_c (∇W_qc − W_qc s_q) ⊗ (X_c − X_q))⁻¹
     /// ```
     ///
-    /// with uniform weights; exact for constants (by s) and linears (by L). docs/theory.md.
+    /// with uniform weights; exact for constants (by s) and linears (by L). docs/theory.md, `[eq:bond-operator]`.
     ///
     /// # Errors
     /// [`SphError::TooFewNeighbours`] where the neighbours do not span the space.

@@ -7,7 +7,7 @@ use crate::Support;
 /// Σ_b V_b f_b W_b / Σ_b V_b W_b at `point`: exact for constants; `None` where no particle is
 /// within the support radius.
 ///
-/// Positions may be the reference or the current ones. Greto & Kulasegaram 2019, (3.1), with the
+/// Positions may be the reference or the current ones. `[eq:interpolation]`: Greto & Kulasegaram 2019, (3.1), with the
 /// constant kernel correction of Bonet & Lok 1999.
 #[must_use]
 pub fn interpolate(

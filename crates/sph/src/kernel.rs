@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-/// A radial kernel of support radius 2h, normalised so that it integrates to one (3.2a).
+/// A radial kernel of support radius 2h, normalised so that it integrates to one (3.2a): `[eq:kernel]`.
 ///
 /// Source of the default: Greto & Kulasegaram 2019, (3.4)-(3.5), with the plane normalisation
 /// corrected to 3/(16π); the printed 1/(32π) does not integrate to one.

@@ -10,7 +10,7 @@ use crate::{GradientOperator, SphError};
 /// singular at corners.
 const SCALING_BOUND: f64 = 2.0;
 
-/// Weighted differences between particles, Σ_b ℓ_ab (f_b − f_a).
+/// Weighted differences between particles, Σ_b ℓ_ab (f_b − f_a): `[eq:laplacian]`.
 ///
 /// The symmetric (Brookshaw) form has ℓ_ab = V_b w_ab with w_ab = −2 W'(r)/r ≥ 0, so that
 /// Σ_a V_a ℓ_ab (f_b − f_a) vanishes pair by pair and the operator is negative semi-definite.

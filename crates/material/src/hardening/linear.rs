@@ -4,7 +4,7 @@ use super::{FlowState, FlowStress, HardeningLaw, INITIAL_YIELD_STRESS};
 use crate::{Key, ParameterError, Range};
 use serde::{Deserialize, Serialize};
 
-/// σ_Y = σ_Y0 + H ε_p, Greto & Kulasegaram 2019, (A.14).
+/// σ_Y = σ_Y0 + H ε_p, Greto & Kulasegaram 2019, (A.14), `[eq:linear-hardening]`.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Linear {

@@ -4,7 +4,7 @@ use super::{FlowState, FlowStress, HardeningLaw};
 use crate::{Key, ParameterError, Range};
 use serde::{Deserialize, Serialize};
 
-/// σ_Y = A (ε_0 + ε_p)ⁿ, Greto & Kulasegaram 2019, (4.3).
+/// σ_Y = A (ε_0 + ε_p)ⁿ, Greto & Kulasegaram 2019, (4.3), `[eq:swift]`.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Swift {

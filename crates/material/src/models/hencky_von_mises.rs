@@ -21,12 +21,12 @@ use serde::{Deserialize, Serialize};
 /// Hencky elasticity with von Mises plasticity, Greto & Kulasegaram 2019, Appendix A.
 ///
 /// ```text
-///   b_e = F C_p⁻¹ Fᵀ                                                      (A.8)
-///   ε' = ½ dev log b_e,   τ' = 2 μ ε',   τ_vol = κ (ln J − 3 α (T − T_ref))  (A.6), (A.9)
-///   τ_eq = √(3/2) |τ'|,   elastic if τ_eq ≤ J σ_Y(ε_p, 0, T)              (A.10)
-///   ν = τ' / (√(2/3) |τ'|)                                                (A.11)
-///   τ_eq − 3 μ Δε_p = J σ_Y(ε_p + Δε_p, Δε_p/Δt, T)                       (A.12), (A.13)
-///   ε' ← ε' − Δε_p ν,   τ' ← τ' (1 − 3 μ Δε_p/τ_eq)                       (A.16), (A.17)
+///   b_e = F C_p⁻¹ Fᵀ                                                      (A.8) [eq:trial]
+///   ε' = ½ dev log b_e,   τ' = 2 μ ε',   τ_vol = κ (ln J − 3 α (T − T_ref))  (A.6), (A.9) [eq:hencky]
+///   τ_eq = √(3/2) |τ'|,   elastic if τ_eq ≤ J σ_Y(ε_p, 0, T)              (A.10) [eq:yield]
+///   ν = τ' / (√(2/3) |τ'|)                                                (A.11) [eq:flow]
+///   τ_eq − 3 μ Δε_p = J σ_Y(ε_p + Δε_p, Δε_p/Δt, T)                       (A.12), (A.13) [eq:return]
+///   ε' ← ε' − Δε_p ν,   τ' ← τ' (1 − 3 μ Δε_p/τ_eq)                       (A.16), (A.17) [eq:update]
 ///   C_p⁻¹ ← F⁻¹ b_e F⁻ᵀ,   ε_p ← ε_p + Δε_p                               (A.19)
 /// ```
 ///

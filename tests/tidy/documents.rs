@@ -1,0 +1,135 @@
+//! The book: links lead somewhere, and every page can be found.
+
+use std::collections::{BTreeSet, HashMap};
+use std::path::{Path, PathBuf};
+
+use crate::{files_below, read, root};
+
+/// Text without fenced blocks and inline code, in which brackets mean something else.
+fn prose(text: &str) -> String {
+    let mut is_fenced = false;
+    let mut prose = String::new();
+    for line in text.lines() {
+        if line.trim_start().starts_with("```") {
+            is_fenced = !is_fenced;
+        } else if !is_fenced {
+            for (number, part) in line.split('`').enumerate() {
+                // Every other part stands between backticks.
+                prose += if number % 2 == 0 { part } else { "x" };
+            }
+            prose.push('\n');
+        }
+    }
+    prose
+}
+
+/// Targets of the links and pictures of a page.
+fn targets(text: &str) -> Vec<String> {
+    let prose = prose(text);
+    let after = prose.split("](").skip(1);
+    after
+        .filter_map(|rest| rest.split_once(')'))
+        .map(|(target, _)| target.to_owned())
+        .collect()
+}
+
+/// The anchors of a page's headings, as mdbook and GitHub make them.
+fn anchors(text: &str) -> BTreeSet<String> {
+    let mut is_fenced = false;
+    let mut seen: HashMap<String, usize> = HashMap::new();
+    let mut anchors = BTreeSet::new();
+    for line in text.lines() {
+        if line.trim_start().starts_with("```") {
+            is_fenced = !is_fenced;
+        }
+        let heading = line.trim_start_matches('#');
+        if is_fenced || !line.starts_with('#') || !heading.starts_with(' ') {
+            continue;
+        }
+        let kept = heading.trim().to_lowercase();
+        let anchor: String = kept
+            .chars()
+            .filter(|c| c.is_alphanumeric() || [' ', '-', '_'].contains(c))
+            .map(|c| if c == ' ' { '-' } else { c })
+            .collect();
+        let count = seen.entry(anchor.clone()).or_insert(0);
+        anchors.insert(if *count == 0 {
+            anchor
+        } else {
+            format!("{anchor}-{count}")
+        });
+        *count += 1;
+    }
+    anchors
+}
+
+/// Why a link of a page leads nowhere.
+fn broken(page: &Path, target: &str) -> Option<String> {
+    if target.contains("://") || target.starts_with("mailto:") {
+        return None;
+    }
+    let (file, anchor) = target.split_once('#').unwrap_or((target, ""));
+    let folder = page.parent().expect("a page lies in a folder");
+    let path = if file.is_empty() {
+        page.to_path_buf()
+    } else {
+        folder.join(file)
+    };
+    if !path.exists() {
+        return Some(format!(
+            "{} links to {target}: no such file",
+            page.display()
+        ));
+    }
+    let is_page = path.extension().is_some_and(|extension| extension == "md");
+    if !anchor.is_empty() && is_page && !anchors(&read(&path)).contains(anchor) {
+        return Some(format!(
+            "{} links to {target}: no such heading",
+            page.display()
+        ));
+    }
+    None
+}
+
+#[test]
+fn links_lead_to_files_and_headings() {
+    let mut pages = files_below(&root().join("docs"), &["md"]);
+    pages.extend(files_below(&root().join("crates"), &["md"]));
+    pages.extend(["README.md", "tests/README.md"].map(|name| root().join(name)));
+    let mut count = 0;
+    let mut all = Vec::new();
+    for page in &pages {
+        for target in targets(&read(page)) {
+            count += 1;
+            all.extend(broken(page, &target));
+        }
+    }
+    assert!(count > 50, "only {count} links found");
+    assert!(all.is_empty(), "{}", all.join("\n"));
+}
+
+#[test]
+fn every_page_is_in_the_summary() {
+    let docs = root().join("docs");
+    let summary = docs.join("SUMMARY.md");
+    let listed: BTreeSet<PathBuf> = targets(&read(&summary))
+        .iter()
+        .map(|target| docs.join(target))
+        .collect();
+    for page in files_below(&docs, &["md"]) {
+        assert!(
+            page == summary || listed.contains(&page),
+            "{} is not in docs/SUMMARY.md",
+            page.display()
+        );
+    }
+}
+
+#[test]
+fn links_are_found_where_markdown_has_them() {
+    let text = "See [a](b.md#c) and `[x](no.md)`.\n```\n[y](no.md)\n```\n![p](q.png)\n";
+    assert_eq!(targets(text), ["b.md#c", "q.png"]);
+    let text = "# A `b` (c.d)\n```\n# no\n```\n## Same\n## Same\n";
+    let expected = ["a-b-cd", "same", "same-1"].map(str::to_owned);
+    assert_eq!(anchors(text), BTreeSet::from(expected));
+}
