@@ -60,6 +60,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod acoustic;
 mod boundary;
 mod consistency;
 mod constraint;
