@@ -335,6 +335,22 @@ hardening = { johnson_cook = { a = "420 MPa", b = "465 MPa", n = 0.5, c = 0.08, 
     }
 
     #[test]
+    fn damage_and_equation_of_state_survive_their_table_and_miss_what_they_need() {
+        let shocked = WARM.replace("\"23e-6 1/K\"", "0")
+            + "damage = { johnson_cook = { d1 = 0.05, d2 = 3.44, d3 = -2.12, d4 = 0.002, d5 = 0.61, \
+               reference_rate = 1, reference_temperature = 293, melting_temperature = 900 } }\n\
+               equation_of_state = { mie_grueneisen = { c0 = \"5.35 km/s\", s = 1.34, gamma0 = 2.0 } }\n";
+        let spec = read(&shocked).expect("sound");
+        let text = toml::to_string(&spec).expect("a table");
+        assert_eq!(read(&text).expect("its own table"), spec);
+        let error = read(&shocked.replace("expansion = 0", "expansion = 1e-5")).expect_err("both");
+        assert!(
+            error.contains("equation_of_state.mie_grueneisen needs thermal.expansion = 0"),
+            "{error}"
+        );
+    }
+
+    #[test]
     fn problems_inside_nested_tables_name_their_key() {
         for (from, to, message) in [
             (

@@ -22,7 +22,7 @@ pub const DAMAGE_LAWS: &[Description] = &[Description {
 /// dD = dε_p/ε_f; at D = 1 the metal has failed: it carries pressure, but neither shear nor tension.
 ///
 /// ```text
-///   ε_f = (D_1 + D_2 exp(D_3 σ*)) (1 + D_4 ln(ε̇_p/ε̇_0)) (1 + D_5 T*)
+///   ε_f = (D_1 + D_2 exp(D_3 σ*)) (1 + D_4 ln(ε̇_p/ε̇_0)) (1 + D_5 T*)    [eq:damage]
 /// ```
 ///
 /// with σ* the mean stress over the equivalent stress, cut at 1.5, the end of the measurements; the

@@ -9,7 +9,7 @@ use crate::{Property, Thermal, WaveSpeeds};
 /// The volumetric part has the free energy, per unit reference volume and less that of heat alone,
 ///
 /// ```text
-///   A(J, T) = ½ κ(T) (ln J)² − 3 α κ(T) (T − T_ref) ln J
+///   A(J, T) = ½ κ(T) (ln J)² − 3 α κ(T) (T − T_ref) ln J          [eq:thermal-energy]
 /// ```
 #[derive(Clone, Copy)]
 pub(crate) struct ElasticConstants<'a> {

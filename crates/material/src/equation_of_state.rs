@@ -24,7 +24,7 @@ pub const EQUATIONS_OF_STATE: &[Description] = &[Description {
 /// capacity, both constants of the [`Thermal`] part:
 ///
 /// ```text
-///   p = p_H + Γ_0 (e − e_H) ,   p_H = ρ c_0² η/(1 − s η)² ,   e_H = ½ p_H η
+///   p = p_H + Γ_0 (e − e_H) ,   p_H = ρ c_0² η/(1 − s η)² ,   e_H = ½ p_H η   [eq:mie-grueneisen]
 /// ```
 ///
 /// which as a function of J and T is, about the isentrope through the reference state,

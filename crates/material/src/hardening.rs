@@ -106,7 +106,8 @@ macro_rules! register_hardening_laws {
             }
 
             /// σ_Y and its slopes.
-            #[inline]
+            // A call here costs the plastic update of the simple laws 5 to 10 % (measured).
+            #[inline(always)]
             #[must_use]
             pub fn flow_stress(&self, at: &FlowState) -> FlowStress {
                 match self { $(Self::$law(law) => law.flow_stress(at)),+ }

@@ -30,7 +30,7 @@ impl RadialReturn {
     /// Δε_p of radial return: the root D of
     ///
     /// ```text
-    ///   g(D) = τ_eq,trial − 3 μ D − J σ_Y(ε_p + D, D/Δt, T)
+    ///   g(D) = τ_eq,trial − 3 μ D − J σ_Y(ε_p + D, D/Δt, T)                    [eq:return-rate]
     /// ```
     ///
     /// Newton's iteration inside a bracket. For a law that does not soften g falls strictly from

@@ -4,7 +4,8 @@ use super::{FlowState, FlowStress, HardeningLaw};
 use crate::{Key, ParameterError, Range};
 use serde::{Deserialize, Serialize};
 
-/// σ_Y = (A + B ε_pⁿ) (1 + C ln(ε̇_p/ε̇_0)) (1 − T*ᵐ), T* = (T − T_r)/(T_m − T_r) in [0, 1].
+/// σ_Y = (A + B ε_pⁿ) (1 + C ln(ε̇_p/ε̇_0)) (1 − T*ᵐ), T* = (T − T_r)/(T_m − T_r) in [0, 1],
+/// `[eq:johnson-cook]`.
 ///
 /// G. R. Johnson & W. H. Cook, Proc. 7th International Symposium on Ballistics (1983), 541-547.
 ///

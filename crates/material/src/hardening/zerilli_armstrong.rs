@@ -5,7 +5,8 @@ use super::{FlowState, FlowStress, HardeningLaw};
 use crate::{Key, ParameterError, Range};
 use serde::{Deserialize, Serialize};
 
-/// σ_Y = C_0 + (C_1 + C_2 √ε_p) exp(−C_3 T + C_4 T ln ε̇_p) + C_5 ε_pⁿ, ε̇_p in 1/s.
+/// σ_Y = C_0 + (C_1 + C_2 √ε_p) exp(−C_3 T + C_4 T ln ε̇_p) + C_5 ε_pⁿ, ε̇_p in 1/s,
+/// `[eq:zerilli-armstrong]`.
 ///
 /// F. J. Zerilli & R. W. Armstrong, Journal of Applied Physics 61 (1987), 1816-1825: body-centred
 /// metals with C_2 = 0, face-centred ones with C_1 = C_5 = 0. C_0 is the athermal part, that of the
