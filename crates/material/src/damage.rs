@@ -1,4 +1,4 @@
-//! Ductile damage: how much plastic strain a metal bears.
+//! Ductile damage: how much plastic strain a metal bears, `[eq:damage]`.
 
 use crate::hardening::{check_melting, homologous_temperature};
 use crate::{Description, Key, ParameterError, Range};

@@ -1,4 +1,4 @@
-//! Pressure at strong compression, as a function of J and T.
+//! Pressure at strong compression, as a function of J and T: `[eq:mie-grueneisen]`.
 
 use crate::{Description, Key, MaterialError, ParameterError, Property, Range, Thermal};
 use serde::{Deserialize, Serialize};

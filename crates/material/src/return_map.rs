@@ -1,4 +1,4 @@
-//! The scalar equation of radial return.
+//! The scalar equation of radial return, `[eq:return]`, with rate `[eq:return-rate]`.
 
 use crate::MaterialError;
 use crate::hardening::{FlowState, FlowStress};

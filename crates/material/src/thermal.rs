@@ -1,4 +1,4 @@
-//! Heat capacity, conductivity and what couples heat to deformation.
+//! Heat capacity, conductivity and what couples heat to deformation: `[eq:thermal-energy]`.
 
 use crate::ParameterError;
 use crate::parameter::{Key, Range};

@@ -234,7 +234,11 @@ fn cells(row: &Row, values: usize, is_number: bool) -> Vec<String> {
     if is_number {
         cells.push(row.difference.map_or(String::new(), percent));
     }
-    let verdict = row.verdict.text();
+    let verdict = if row.verdict == Verdict::NotRun && !row.values.is_empty() {
+        "too few resolutions"
+    } else {
+        row.verdict.text()
+    };
     cells.push(if row.note.is_empty() || row.verdict == Verdict::NotRun {
         verdict.to_owned()
     } else {

@@ -1,4 +1,4 @@
-//! Hardening by strain and rate, softening by temperature.
+//! Hardening by strain and rate, softening by temperature: `[eq:johnson-cook]`.
 
 use super::{FlowState, FlowStress, HardeningLaw};
 use crate::{Key, ParameterError, Range};

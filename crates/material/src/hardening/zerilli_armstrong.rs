@@ -1,4 +1,4 @@
-//! Strength by the thermal activation of dislocations.
+//! Strength by the thermal activation of dislocations: `[eq:zerilli-armstrong]`.
 
 use super::johnson_cook::power;
 use super::{FlowState, FlowStress, HardeningLaw};

@@ -1,5 +1,5 @@
 //! How nearly Σ_q V_q B_qc is the outward area vector of particle c: docs/theory.md,
-//! `[eq:summation-by-parts]`.
+//! `[eq:summation-by-parts]`, `[eq:area-vectors]`.
 
 use jstsph_geometry::{Body, face_areas};
 use jstsph_tensor::{Mat3, Vec3};
