@@ -3,7 +3,7 @@
 
 use jstsph_material::hardening::{Hardening, Linear};
 use jstsph_material::models::HenckyVonMises;
-use jstsph_material::{Kinematics, Material, PlasticHistory};
+use jstsph_material::{Kinematics, Material, PlasticHistory, ROOM_TEMPERATURE};
 use jstsph_tensor::{Mat3, Vec3, exp_symmetric, von_mises};
 use jstsph_tests::Study;
 
@@ -14,15 +14,15 @@ const HARDENING: f64 = 0.1e9;
 const SHEAR: f64 = YOUNG / (2.0 * (1.0 + POISSON));
 
 fn copper() -> HenckyVonMises {
-    HenckyVonMises {
-        density: 8930.0,
-        young_modulus: YOUNG,
-        poisson_ratio: POISSON,
-        hardening: Hardening::Linear(Linear {
+    HenckyVonMises::new(
+        8930.0,
+        YOUNG,
+        POISSON,
+        Hardening::Linear(Linear {
             initial_yield_stress: YIELD,
             modulus: HARDENING,
         }),
-    }
+    )
 }
 
 /// Kirchhoff stress and history after a step to F, with J = det F.
@@ -31,9 +31,10 @@ fn step(model: &HenckyVonMises, f: &Mat3, old: &PlasticHistory) -> (Mat3, Plasti
         deformation_gradient: *f,
         jacobian: f.determinant(),
         dt: 1e-6,
+        temperature: ROOM_TEMPERATURE,
     };
     let response = model.respond(&now, old).expect("a sound deformation");
-    let pressure = model.volumetric_stress(now.jacobian);
+    let pressure = model.volumetric_stress(now.jacobian, now.temperature);
     (
         response.kirchhoff_stress + Mat3::identity() * pressure,
         response.history,

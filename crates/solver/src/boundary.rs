@@ -1,7 +1,7 @@
 //! The boundary as the gradient operator should see it: docs/theory.md, "Summation by parts near the
 //! boundary".
 
-use jstsph_geometry::{Body, face_areas};
+use jstsph_geometry::{Body, Shape, face_areas};
 use jstsph_sph::{Correction, GradientOperator, SphError, Support};
 use jstsph_tensor::Vec3;
 
@@ -22,13 +22,21 @@ const EXTRAPOLATION_RATIO: f64 = 0.8;
 /// of the true surface, which is the node itself except on the staircase of a round body. Hence Σ N
 /// and Σ X ⊗ N are those of the surface, zero and V 1.
 ///
+/// `None` for bodies carved out of a lattice: their staircase does not have the moments of the surface.
+///
 /// # Errors
 /// [`SphError`] where a node of a staircase lacks neighbours.
 pub(crate) fn area_vectors(
     body: &Body,
     weights: &[f64],
     support: &Support,
-) -> Result<Vec<Vec3>, SphError> {
+) -> Result<Option<Vec<Vec3>>, SphError> {
+    if !matches!(
+        body.shape,
+        Shape::Box { .. } | Shape::Disc { .. } | Shape::Cylinder { .. }
+    ) {
+        return Ok(None);
+    }
     let parts: Vec<_> = body
         .shape
         .faces(body.dimension)
@@ -65,7 +73,7 @@ pub(crate) fn area_vectors(
             }
         }
     }
-    Ok(vectors)
+    Ok(Some(vectors))
 }
 
 /// The operator made to sum by parts, and how, when it does not do so by itself.
