@@ -158,7 +158,8 @@ fn order_along(name: &str, path: impl Fn(f64) -> Mat3) -> Study {
 /// Backward Euler: first order where the direction of flow turns. Measured 1.00 to 1.02 in all.
 #[test]
 fn return_map_is_first_order_along_paths_that_turn() {
-    let paths: [(&str, fn(f64) -> Mat3); 3] = [
+    type Path = fn(f64) -> Mat3;
+    let paths: [(&str, Path); 3] = [
         ("simple shear to 1.5", |s| shear(1.5 * s)),
         (
             "tension, then shear",

@@ -241,7 +241,7 @@ fn in_temperature(node: &Node, path: &str, key: &Key) -> Result<toml::Value, Pro
         if !LISTS.contains(&name) {
             return Err(
                 Problem::new(&value.origin, format!("unknown key `{name}` in {path}"))
-                    .allowed(name, LISTS.into_iter()),
+                    .allowed(name, LISTS),
             );
         }
     }

@@ -37,7 +37,7 @@ fn friction_is_not_negative() {
     expect(
         "name = \"floor\"",
         "name = \"floor\"\nfriction = -0.1",
-        &["`obstacle.floor.friction`", "negative"],
+        &["`obstacle.floor.friction` must be zero or positive, but is -0.1"],
     );
 }
 
