@@ -205,3 +205,33 @@ fn hot_plate_heats_what_touches_it() {
         assert!(relative.abs() < 1e-8, "{name}: {relative:.1e}");
     }
 }
+
+/// Adiabatic elastic waves with a strong thermoelastic coupling (a tenth of the bulk modulus) keep
+/// their energy: an exchange one step behind the stress would make them grow by some per cent a step.
+#[test]
+fn adiabatic_elastic_waves_do_not_grow() {
+    for (name, scheme) in schemes() {
+        let body = tumbling::body(Dimension::PlaneStrain);
+        let velocity =
+            |x: &Vec3| Vec3::new(0.3 * (60.0 * x.x).sin(), 0.2 * (70.0 * x.y).cos(), 0.0);
+        let model = setup::free_body(body, setup::rubber(0.3), velocity, scheme);
+        // (3 α κ)² T/(ρ c) = 0.09 κ.
+        let mut model = hot(
+            model,
+            MaterialSpec::Hencky(setup::conductor(1.6e-3)),
+            |_| ROOM,
+        );
+        model.heat = Some(Heat {
+            conduction: false,
+            ..HEAT
+        });
+        let mut simulation = setup::start(model);
+        let start = simulation.energies().initial;
+        setup::advance_steps(&mut simulation, 1000);
+        let energies = simulation.energies();
+        assert!(
+            energies.kinetic < 1.05 * start && energies.balance().abs() < 2e-3,
+            "{name}: {energies:?}"
+        );
+    }
+}

@@ -4,8 +4,10 @@
 
 mod constrained_block;
 mod ecae;
+mod hot_compression;
 mod l_shaped_block;
 mod taylor_bar;
+mod tensile_test;
 
 use std::path::Path;
 

@@ -49,8 +49,9 @@ pub(crate) struct HeatProcess {
     conditions: Vec<Condition>,
     obstacles: Vec<ModelObstacle>,
     initial_temperature: Vec<f64>,
-    /// J of the particles before the step under way.
-    pub(crate) jacobian_before: Vec<f64>,
+    /// J and T of the particles before the step under way.
+    jacobian_before: Vec<f64>,
+    temperature_before: Vec<f64>,
     /// Heat generated in the step under way, J/m³.
     source: Vec<f64>,
     flux: Vec<Vec3>,
@@ -73,15 +74,44 @@ pub(crate) struct OutOfRange {
     pub(crate) range: (f64, f64),
 }
 
-/// T ∂τ_vol/∂T ln(J/J₀) of every particle: heat per reference volume taken up by elasticity, J/m³.
-struct Thermoelastic<'a> {
+/// Temperatures of adiabatic elastic changes of volume, from those before the step:
+/// ρ c dT = T ∂τ_vol/∂T d(ln J), midpoint rule in T and J.
+struct Adiabatic<'a> {
+    capacity: &'a Property,
+    density: f64,
+    jacobian_before: &'a [f64],
+    temperature_before: &'a [f64],
+    jacobian: &'a [f64],
+    temperature: &'a mut [f64],
+}
+
+impl BlockReader for Adiabatic<'_> {
+    type Output = ();
+    fn visit<M: Material>(&mut self, block: &Block<M>) {
+        let (before, now) = (self.jacobian_before, self.jacobian);
+        let (start, capacity, density) = (self.temperature_before, self.capacity, self.density);
+        parallel::for_each(self.temperature, |a, temperature| {
+            let middle = (before[a] * now[a]).sqrt();
+            let change = (now[a] / before[a]).ln();
+            let after = |t: f64| {
+                let heat = block.model.thermoelastic_stress(middle, t) * change / density;
+                heated(capacity, start[a], heat)
+            };
+            *temperature = after(0.5 * (start[a] + after(start[a])));
+        });
+    }
+}
+
+/// T ∂τ_vol/∂T ln(J/J₀) of every particle: heat per reference volume taken up by elasticity while
+/// the surroundings keep the temperature, J/m³.
+struct Isothermal<'a> {
     before: &'a [f64],
     after: &'a [f64],
     temperature: &'a [f64],
     out: &'a mut [f64],
 }
 
-impl BlockReader for Thermoelastic<'_> {
+impl BlockReader for Isothermal<'_> {
     type Output = ();
     fn visit<M: Material>(&mut self, block: &Block<M>) {
         let (before, after, temperature) = (self.before, self.after, self.temperature);
@@ -165,6 +195,11 @@ impl HeatProcess {
             });
         }
         let particles = reference.position.len();
+        let initial_temperature: Vec<f64> = model
+            .bodies
+            .iter()
+            .flat_map(|body| body.initial_temperature.iter().copied())
+            .collect();
         Ok(Some(Box::new(Self {
             settings: model.heat,
             bodies,
@@ -175,11 +210,8 @@ impl HeatProcess {
                 .cloned()
                 .collect(),
             obstacles: model.obstacles.clone(),
-            initial_temperature: model
-                .bodies
-                .iter()
-                .flat_map(|body| body.initial_temperature.iter().copied())
-                .collect(),
+            temperature_before: initial_temperature.clone(),
+            initial_temperature,
             jacobian_before: vec![1.0; particles],
             source: vec![0.0; particles],
             flux: vec![Vec3::zeros(); first_flux],
@@ -194,9 +226,39 @@ impl HeatProcess {
         self.settings.is_some()
     }
 
-    /// Remembers J before a step.
+    /// Remembers J and T before a step.
     pub(crate) fn open(&mut self, state: &State) {
         self.jacobian_before.copy_from_slice(&state.jacobian);
+        self.temperature_before.copy_from_slice(&state.temperature);
+    }
+
+    /// Temperatures that go with the present J, before the stress is evaluated with them.
+    ///
+    /// The thermoelastic exchange belongs to the stress of the same J: one step late it would be a
+    /// negative viscosity, (3 α κ)² T/(ρ c) Δt, and the waves of an elastic body would grow.
+    pub(crate) fn exchange_with_elasticity(
+        &self,
+        reference: &Reference,
+        materials: &[MaterialBlock],
+        state: &mut State,
+    ) {
+        if self.settings.is_none() {
+            return;
+        }
+        for ((body, heat), material) in reference.bodies.iter().zip(&self.bodies).zip(materials) {
+            if !heat.thermoelastic {
+                continue;
+            }
+            let range = body.particles.clone();
+            material.visit_ref(&mut Adiabatic {
+                capacity: &heat.thermal.heat_capacity,
+                density: body.material_density,
+                jacobian_before: &self.jacobian_before[range.clone()],
+                temperature_before: &self.temperature_before[range.clone()],
+                jacobian: &state.jacobian[range.clone()],
+                temperature: &mut state.temperature[range],
+            });
+        }
     }
 
     /// Advances the temperatures over the step of `dt` that ends at `time` with the present state.
@@ -274,8 +336,8 @@ impl HeatProcess {
             } else {
                 source.fill(0.0);
             }
-            if heat.thermoelastic {
-                material.visit_ref(&mut Thermoelastic {
+            if heat.thermoelastic && self.settings.is_none() {
+                material.visit_ref(&mut Isothermal {
                     before: &self.jacobian_before[range.clone()],
                     after: &state.jacobian[range.clone()],
                     temperature: &state.temperature[range.clone()],

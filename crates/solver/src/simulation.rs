@@ -305,7 +305,12 @@ impl Simulation {
             .evaluate(&self.reference, self.time, &mut self.work.external_force);
     }
 
+    /// Stress of the present strains from the committed history, with the temperatures that go
+    /// with them.
     pub(crate) fn evaluate_stress(&mut self, dt: f64) -> Result<(), SolverError> {
+        if let Some(heat) = &self.heat {
+            heat.exchange_with_elasticity(&self.reference, &self.materials, &mut self.state);
+        }
         stress::evaluate(
             self.strains(),
             &self.reference,
