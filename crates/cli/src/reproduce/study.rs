@@ -10,7 +10,10 @@ use super::measure::Measure;
 use crate::error::CliError;
 
 /// Names and data files of the studies; another one is another line here.
-const STUDIES: &[(&str, &str)] = &[("greto2019", include_str!("../../studies/greto2019.toml"))];
+const STUDIES: &[(&str, &str)] = &[
+    ("greto2019", include_str!("../../studies/greto2019.toml")),
+    ("ba-gakwaya", include_str!("../../studies/ba-gakwaya.toml")),
+];
 
 /// A publication, what to run for it and what it reports.
 #[derive(Debug, Deserialize)]
