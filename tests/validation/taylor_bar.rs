@@ -66,7 +66,10 @@ fn nothing_is_below_the_wall() {
 fn radius_of_the_undeformed_edge_is_that_of_the_cylinder() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../cases/taylor-bar.toml");
     for per_radius in [2, 3, 5, 6] {
-        let lattice = format!("{{ per_radius = {per_radius}, layers = 4 }}");
+        let lattice = format!(
+            "{{ per_radius = {per_radius}, layers = {} }}",
+            10 * per_radius + 1
+        );
         let overrides = [("body.bar.lattice".to_owned(), lattice)];
         let case = jstsph_case::load(path.as_ref(), &overrides).expect("a valid case");
         let simulation = jstsph_solver::Simulation::new(case.model).expect("a valid model");
