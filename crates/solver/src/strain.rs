@@ -8,6 +8,8 @@ use crate::parallel;
 use crate::reference::Reference;
 use crate::state::{State, Workspace};
 
+mod drift;
+
 /// Which strain measures are integrated, and where they live.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Strains {
@@ -45,26 +47,14 @@ pub(crate) fn drift(
         ..
     } = work;
     let bonds = strains.quadrature == Quadrature::Bonds;
-    parallel::for_each_triple(
+    let step = drift::Drift { bonds, dt };
+    parallel::for_each_chunk(
         &mut state.deformation_gradient,
         &mut state.cofactor,
         volume_change,
-        |q, f, h, change| {
-            let g = &velocity_gradient[q];
-            let start = *h;
-            let quarter = *f + g * (0.25 * dt);
-            let half = *f + g * (0.5 * dt);
-            let middle = start + tensor_cross(&quarter, g) * (0.5 * dt);
-            let end = start + tensor_cross(&half, g) * dt;
-            *f += g * dt;
-            *change = if bonds {
-                // tr(G F⁻¹) = H : G / det F with det F = ⅓ H : F.
-                3.0 * dt * double_dot(&middle, g) / double_dot(&middle, &half)
-            } else {
-                let simpson = start + middle * 4.0 + end;
-                dt / 6.0 * double_dot(&simpson, g)
-            };
-            *h = end;
+        |offset, f, h, change| {
+            let g = &velocity_gradient[offset..offset + f.len()];
+            step.advance(g, f, h, change);
         },
     );
     for body in &reference.bodies {
