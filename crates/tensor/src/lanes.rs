@@ -78,9 +78,7 @@ impl<S: Simd> Lanes<S> {
     #[must_use]
     pub fn inverse(self) -> Self {
         Self {
-            values: self
-                .simd
-                .div_f64s(self.simd.splat_f64s(1.0), self.values),
+            values: self.simd.div_f64s(self.simd.splat_f64s(1.0), self.values),
             ..self
         }
     }
@@ -103,6 +101,13 @@ impl<S: Simd> Lanes<S> {
             values: self.simd.sqrt_f64s(self.values),
             ..self
         }
+    }
+
+    /// The largest of the lanes; any number if one of them is none.
+    #[inline(always)]
+    #[must_use]
+    pub fn largest(self) -> f64 {
+        self.simd.reduce_max_f64s(self.values)
     }
 
     /// Lane by lane `if self < limit { yes } else { no }`; not a number is not less.
@@ -171,6 +176,46 @@ impl<S: Simd> Neg for Lanes<S> {
     }
 }
 
+/// The `pack`-th vectors of several tiles.
+// Here and below loops instead of closures: a closure that is compiled on its own has not the
+// instruction set of the function around it.
+#[inline(always)]
+#[must_use]
+pub fn load_all<S: Simd, const N: usize>(
+    simd: S,
+    tiles: &[[f64; TILE]; N],
+    pack: usize,
+) -> [Lanes<S>; N] {
+    let mut lanes = [Lanes::splat(simd, 0.0); N];
+    for k in 0..N {
+        lanes[k] = Lanes::load(simd, &tiles[k], pack);
+    }
+    lanes
+}
+
+/// Writes the `pack`-th vectors of several tiles.
+#[inline(always)]
+pub fn store_all<S: Simd, const N: usize>(
+    lanes: &[Lanes<S>; N],
+    tiles: &mut [[f64; TILE]; N],
+    pack: usize,
+) {
+    for k in 0..N {
+        lanes[k].store(&mut tiles[k], pack);
+    }
+}
+
+/// Every lane vector of a list times the same one.
+#[inline(always)]
+#[must_use]
+pub fn times<S: Simd, const N: usize>(list: &[Lanes<S>; N], factor: Lanes<S>) -> [Lanes<S>; N] {
+    let mut scaled = *list;
+    for value in &mut scaled {
+        *value = *value * factor;
+    }
+    scaled
+}
+
 /// A tile of tensors, component by component in the order 11, 21, 31, 12, 22, 32, 13, 23, 33.
 #[derive(Clone, Debug)]
 pub struct TensorTile(pub [[f64; TILE]; 9]);
@@ -213,15 +258,13 @@ impl TensorTile {
     #[inline(always)]
     #[must_use]
     pub fn load<S: Simd>(&self, simd: S, pack: usize) -> TensorLanes<S> {
-        TensorLanes(self.0.each_ref().map(|tile| Lanes::load(simd, tile, pack)))
+        TensorLanes(load_all(simd, &self.0, pack))
     }
 
     /// Writes the `pack`-th vectors of all components.
     #[inline(always)]
     pub fn store<S: Simd>(&mut self, lanes: &TensorLanes<S>, pack: usize) {
-        for (tile, value) in self.0.iter_mut().zip(lanes.0) {
-            value.store(tile, pack);
-        }
+        store_all(&lanes.0, &mut self.0, pack);
     }
 }
 
@@ -234,17 +277,22 @@ impl<S: Simd> TensorLanes<S> {
     #[inline(always)]
     #[must_use]
     pub fn plus(&self, other: &Self, factor: f64) -> Self {
-        Self(std::array::from_fn(|k| self.0[k] + other.0[k] * factor))
+        let mut sum = *self;
+        for k in 0..9 {
+            sum.0[k] = self.0[k] + other.0[k] * factor;
+        }
+        sum
     }
 
     /// A : B, in the order of [`double_dot`](crate::double_dot).
     #[inline(always)]
     #[must_use]
     pub fn double_dot(&self, other: &Self) -> Lanes<S> {
-        let (a, b) = (&self.0, &other.0);
-        let column =
-            |j: usize| a[3 * j] * b[3 * j] + a[3 * j + 1] * b[3 * j + 1] + a[3 * j + 2] * b[3 * j + 2];
-        column(0) + column(1) + column(2)
+        let [a11, a21, a31, a12, a22, a32, a13, a23, a33] = self.0;
+        let [b11, b21, b31, b12, b22, b32, b13, b23, b33] = other.0;
+        (a11 * b11 + a21 * b21 + a31 * b31)
+            + (a12 * b12 + a22 * b22 + a32 * b32)
+            + (a13 * b13 + a23 * b23 + a33 * b33)
     }
 
     /// A × B, in the order of [`tensor_cross`](crate::tensor_cross).
@@ -298,8 +346,7 @@ mod tests {
         };
         let a: Vec<_> = (0..TILE).map(|i| sample(i, 0.1)).collect();
         let b: Vec<_> = (0..TILE).map(|i| sample(i, 2.3)).collect();
-        let (mut at, mut bt, mut cross) =
-            (TensorTile::ZERO, TensorTile::ZERO, TensorTile::ZERO);
+        let (mut at, mut bt, mut cross) = (TensorTile::ZERO, TensorTile::ZERO, TensorTile::ZERO);
         at.read(&a);
         bt.read(&b);
         let mut dot = [0.0; TILE];

@@ -12,8 +12,9 @@ use crate::parameter::{
 use crate::return_map::RadialReturn;
 use crate::thermal::THERMAL;
 use crate::{
-    Damage, EquationOfState, History, JohnsonCookDamage, Key, Kinematics, Material, MaterialError,
-    MieGrueneisen, ParameterError, PlasticHistory, Property, Response, Thermal, WaveSpeeds,
+    Damage, EquationOfState, History, JohnsonCookDamage, Key, Kinematics, KinematicsTile, Material,
+    MaterialError, MieGrueneisen, ParameterError, PlasticHistory, Property, Response, ResponseTile,
+    Thermal, WaveSpeeds,
 };
 use jstsph_tensor::{Mat3, cofactor, norm_squared};
 use serde::{Deserialize, Serialize};
@@ -317,6 +318,17 @@ impl Material for HenckyVonMises {
         })
     }
 
+    #[inline]
+    fn respond_tile(
+        &self,
+        now: &KinematicsTile,
+        old: &[PlasticHistory],
+        new: &mut [PlasticHistory],
+        response: &mut ResponseTile,
+    ) -> bool {
+        tile::respond(self, now, old, new, response)
+    }
+
     /// κ (ln J − 3 α (T − T_ref)).
     #[inline]
     fn volumetric_stress(&self, jacobian: f64, temperature: f64) -> f64 {
@@ -437,6 +449,8 @@ pub(super) fn example_thermal() -> Thermal {
         reference_temperature: crate::ROOM_TEMPERATURE,
     }
 }
+
+mod tile;
 
 #[cfg(test)]
 mod homogeneous;
