@@ -93,6 +93,19 @@ pub(crate) fn for_each_triple<A: Send, B: Send, C: Send>(
         });
 }
 
+/// Calls `action(offset, run)` on runs that together are all items, where `offset` is the index of the
+/// first of them. How long they are depends on the threads: for work on single items only.
+pub(crate) fn for_each_run<T: Send>(items: &mut [T], action: impl Fn(usize, &mut [T]) + Sync) {
+    if serial(items.len()) {
+        action(0, items);
+        return;
+    }
+    items
+        .par_chunks_mut(CHUNK)
+        .enumerate()
+        .for_each(|(chunk, items)| action(chunk * CHUNK, items));
+}
+
 /// Calls `action(offset, first, second, third)` on runs of [`CHUNK`] items, the last one shorter,
 /// where `offset` is the index of the first of them.
 pub(crate) fn for_each_chunk<A: Send, B: Send, C: Send>(

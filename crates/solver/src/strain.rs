@@ -20,10 +20,18 @@ pub(crate) struct Strains {
 /// G_q = Σ_c (p_c/ρ) ⊗ B_qc at every point, 1/s.
 pub(crate) fn velocity_gradient(reference: &Reference, state: &State, work: &mut Workspace) {
     for body in &reference.bodies {
-        let momentum = &state.momentum[body.particles.clone()];
+        let range = body.particles.clone();
         let inverse_density = 1.0 / body.density;
-        parallel::fill(&mut work.velocity_gradient[body.points.clone()], |q| {
-            body.gradient.gradient_at(q, momentum) * inverse_density
+        let momentum = &state.momentum[range.clone()];
+        let padded = &mut work.padded_momentum[range];
+        parallel::fill(padded, |a| {
+            [momentum[a].x, momentum[a].y, momentum[a].z, 0.0]
+        });
+        let padded = &*padded;
+        let gradients = &mut work.velocity_gradient[body.points.clone()];
+        parallel::for_each_run(gradients, |offset, gradients| {
+            body.gradient
+                .scaled_gradients(offset, padded, inverse_density, gradients);
         });
     }
 }

@@ -228,7 +228,9 @@ impl TensorTile {
     ///
     /// # Panics
     /// If there are fewer: a bug in the caller.
-    #[inline(always)]
+    // Not inlined: with a wide instruction set the compiler would gather and scatter, which takes
+    // several times as long as moving number by number.
+    #[inline(never)]
     pub fn read(&mut self, tensors: &[Mat3]) {
         let tensors = &tensors[..TILE];
         for (i, tensor) in tensors.iter().enumerate() {
@@ -243,7 +245,7 @@ impl TensorTile {
     ///
     /// # Panics
     /// If there are fewer: a bug in the caller.
-    #[inline(always)]
+    #[inline(never)]
     pub fn write(&self, tensors: &mut [Mat3]) {
         let tensors = &mut tensors[..TILE];
         for (i, tensor) in tensors.iter_mut().enumerate() {

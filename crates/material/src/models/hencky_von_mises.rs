@@ -285,7 +285,10 @@ impl Material for HenckyVonMises {
             dt: now.dt,
             temperature: now.temperature,
         }
-        .plastic_increment(flow_stress, |at| self.hardening.flow_stress(at))?;
+        .plastic_increment(flow_stress, |at| {
+            self.hardening
+                .flow_stress_near(&flow_stress, old.equivalent_plastic_strain, at)
+        })?;
         let (equivalent_stress, plastic_work) = if flow_stress.value > 0.0 {
             let stress = trial_equivalent_stress - 3.0 * mu * increment;
             (stress, stress * increment)

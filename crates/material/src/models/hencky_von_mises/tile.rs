@@ -170,7 +170,10 @@ impl Flow {
                 dt: now.dt,
                 temperature,
             }
-            .plastic_increment(start, |at| model.hardening.flow_stress(at))
+            .plastic_increment(start, |at| {
+                model.hardening
+                    .flow_stress_near(&start, old.equivalent_plastic_strain, at)
+            })
             .ok()?;
             if increment > LARGEST_INCREMENT {
                 return None;
