@@ -60,6 +60,13 @@ pub trait HardeningLaw: Clone + Debug + Send + Sync + 'static {
     /// σ_Y and its slopes.
     fn flow_stress(&self, at: &FlowState) -> FlowStress;
 
+    /// σ_Y and its slopes at `at`, to round-off, from those at the plastic strain `from`, for laws
+    /// that find them sooner so where the strains are near each other.
+    #[inline]
+    fn flow_stress_near(&self, _start: &FlowStress, _from: f64, at: &FlowState) -> FlowStress {
+        self.flow_stress(at)
+    }
+
     /// Parameter sets on which the conformance tests run.
     fn examples() -> Vec<Self>;
 }
@@ -111,6 +118,19 @@ macro_rules! register_hardening_laws {
             #[must_use]
             pub fn flow_stress(&self, at: &FlowState) -> FlowStress {
                 match self { $(Self::$law(law) => law.flow_stress(at)),+ }
+            }
+
+            /// σ_Y and its slopes at `at`, from those at the plastic strain `from`, rate zero and the
+            /// same temperature: to round-off those of [`flow_stress`](Self::flow_stress).
+            #[inline(always)]
+            #[must_use]
+            pub fn flow_stress_near(
+                &self,
+                start: &FlowStress,
+                from: f64,
+                at: &FlowState,
+            ) -> FlowStress {
+                match self { $(Self::$law(law) => law.flow_stress_near(start, from, at)),+ }
             }
 
             /// Examples of every law.

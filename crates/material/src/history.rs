@@ -81,6 +81,22 @@ impl PlasticHistory {
         }
     }
 
+    /// C_p⁻¹ as 11, 22, 33, 12, 13, 23.
+    #[inline]
+    pub(crate) fn components(&self) -> &[f64; 6] {
+        &self.components
+    }
+
+    /// Undamaged, from ε_p and C_p⁻¹ as 11, 22, 33, 12, 13, 23.
+    #[inline]
+    pub(crate) fn from_components(equivalent_plastic_strain: f64, components: [f64; 6]) -> Self {
+        Self {
+            equivalent_plastic_strain,
+            components,
+            damage: 0.0,
+        }
+    }
+
     /// The same with a damage D.
     #[inline]
     #[must_use]

@@ -50,6 +50,7 @@ mod material;
 mod parameter;
 mod return_map;
 mod thermal;
+mod tile;
 
 pub mod hardening;
 pub mod models;
@@ -67,3 +68,4 @@ pub use material::{Kinematics, Material, ROOM_TEMPERATURE, Response, WaveSpeeds}
 pub use models::{MODELS, MaterialBlock, MaterialSpec, NAMES, SUMMARIES};
 pub use parameter::{Description, Key, Range};
 pub use thermal::{Property, Thermal};
+pub use tile::{KinematicsTile, ResponseTile};

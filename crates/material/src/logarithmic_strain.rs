@@ -10,15 +10,15 @@ use jstsph_tensor::{Mat3, exp_symmetric, mean_trace, norm_squared, symmetric_eig
 /// Bound on |A|² below which the long series are used, beyond it principal values. A trace-free A of
 /// norm 0.1 has principal values up to 0.082; the first term left out, relative to the first kept, is
 /// 0.082¹⁴/15 < 1e-16 for the logarithm and 0.082¹⁰/11! < 1e-18 for the exponential.
-const SERIES_LIMIT: f64 = 0.1 * 0.1;
-const LONG_LOGARITHM: [f64; 15] = logarithm();
-const LONG_EXPONENTIAL: [f64; 11] = exponential_less_one();
+pub(crate) const SERIES_LIMIT: f64 = 0.1 * 0.1;
+pub(crate) const LONG_LOGARITHM: [f64; 15] = logarithm();
+pub(crate) const LONG_EXPONENTIAL: [f64; 11] = exponential_less_one();
 
 /// Bound on |A|² below which the short series are used: the elastic strains of most metals. By the
 /// same measure 0.0082⁸/9 < 1e-17 and 0.0082⁶/7! < 1e-16.
-const SHORT_SERIES_LIMIT: f64 = 0.01 * 0.01;
-const SHORT_LOGARITHM: [f64; 9] = logarithm();
-const SHORT_EXPONENTIAL: [f64; 7] = exponential_less_one();
+pub(crate) const SHORT_SERIES_LIMIT: f64 = 0.01 * 0.01;
+pub(crate) const SHORT_LOGARITHM: [f64; 9] = logarithm();
+pub(crate) const SHORT_EXPONENTIAL: [f64; 7] = exponential_less_one();
 
 /// Coefficients of log(1 + x), from x⁰ on.
 const fn logarithm<const N: usize>() -> [f64; N] {

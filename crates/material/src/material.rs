@@ -1,6 +1,6 @@
 //! The contract between a constitutive model and whoever evaluates it.
 
-use crate::{History, Key, MaterialError, ParameterError, Thermal};
+use crate::{History, Key, KinematicsTile, MaterialError, ParameterError, ResponseTile, Thermal};
 use jstsph_tensor::Mat3;
 use std::fmt::Debug;
 
@@ -122,6 +122,24 @@ pub trait Material: Clone + Debug + Send + Sync + 'static {
         now: &Kinematics,
         old: &Self::History,
     ) -> Result<Response<Self::History>, MaterialError>;
+
+    /// [`respond`](Self::respond) for [`TILE`](jstsph_tensor::lanes::TILE) points at once, with the same bits:
+    /// writes `new` and `response` from the histories `old`, or returns false when the points have to
+    /// be asked one by one. This is so for models without such a path, and for a point that is not
+    /// sound or strained beyond the range of it; what was written is then worthless.
+    ///
+    /// # Panics
+    /// If there are fewer histories than points: a bug in the caller.
+    #[inline]
+    fn respond_tile(
+        &self,
+        _now: &KinematicsTile,
+        _old: &[Self::History],
+        _new: &mut [Self::History],
+        _response: &mut ResponseTile,
+    ) -> bool {
+        false
+    }
 
     /// τ_vol(J, T), Pa: the Kirchhoff stress to add as τ_vol 1; J U'(J) for a model that does not
     /// read the temperature. The caller makes sure that J > 0.

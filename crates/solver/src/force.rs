@@ -14,8 +14,12 @@ pub(crate) fn internal(reference: &Reference, work: &mut Workspace) {
     for body in &reference.bodies {
         let stress = &work.scaled_stress[body.points.clone()];
         let volume = &reference.volume[body.particles.clone()];
-        parallel::fill(&mut work.internal_force[body.particles.clone()], |c| {
-            body.gradient.divergence_at(c, stress) / volume[c]
+        let force = &mut work.internal_force[body.particles.clone()];
+        parallel::for_each_run(force, |offset, force| {
+            body.gradient.divergences(offset, stress, force);
+            for (force, volume) in force.iter_mut().zip(&volume[offset..]) {
+                *force /= *volume;
+            }
         });
     }
 }

@@ -93,6 +93,43 @@ pub(crate) fn for_each_triple<A: Send, B: Send, C: Send>(
         });
 }
 
+/// Calls `action(offset, run)` on runs that together are all items, where `offset` is the index of the
+/// first of them. How long they are depends on the threads: for work on single items only.
+pub(crate) fn for_each_run<T: Send>(items: &mut [T], action: impl Fn(usize, &mut [T]) + Sync) {
+    if serial(items.len()) {
+        action(0, items);
+        return;
+    }
+    items
+        .par_chunks_mut(CHUNK)
+        .enumerate()
+        .for_each(|(chunk, items)| action(chunk * CHUNK, items));
+}
+
+/// Calls `action(offset, first, second, third)` on runs of [`CHUNK`] items, the last one shorter,
+/// where `offset` is the index of the first of them.
+pub(crate) fn for_each_chunk<A: Send, B: Send, C: Send>(
+    first: &mut [A],
+    second: &mut [B],
+    third: &mut [C],
+    action: impl Fn(usize, &mut [A], &mut [B], &mut [C]) + Sync,
+) {
+    debug_assert!(first.len() == second.len() && second.len() == third.len());
+    if serial(first.len()) {
+        let chunks = first.chunks_mut(CHUNK).zip(second.chunks_mut(CHUNK));
+        for (chunk, ((a, b), c)) in chunks.zip(third.chunks_mut(CHUNK)).enumerate() {
+            action(chunk * CHUNK, a, b, c);
+        }
+        return;
+    }
+    first
+        .par_chunks_mut(CHUNK)
+        .zip(second.par_chunks_mut(CHUNK))
+        .zip(third.par_chunks_mut(CHUNK))
+        .enumerate()
+        .for_each(|(chunk, ((a, b), c))| action(chunk * CHUNK, a, b, c));
+}
+
 /// Calls `action(i, &mut first[i], &mut second[i], &mut third[i], group)` for every i, where
 /// `group` is the i-th run of `width` entries of `grouped`.
 pub(crate) fn for_each_with_group<A: Send, B: Send, C: Send, G: Send>(

@@ -53,6 +53,8 @@ impl State {
 /// Buffers of one evaluation of the right-hand side; allocated once.
 #[derive(Clone, Debug)]
 pub(crate) struct Workspace {
+    /// The momenta with a fourth number, zero, for vector loads.
+    pub(crate) padded_momentum: Vec<[f64; 4]>,
     /// G = grad(p/ρ) at the points, 1/s.
     pub(crate) velocity_gradient: Vec<Mat3>,
     /// Change of volume of a point over the step or per second, see the strain pass.
@@ -92,6 +94,7 @@ impl Workspace {
         let pairs = reference.bodies.iter().any(|body| body.pairs.is_some());
         let averaged = if pairs { particles } else { 0 };
         Self {
+            padded_momentum: vec![[0.0; 4]; particles],
             velocity_gradient: vec![Mat3::zeros(); points],
             volume_change: vec![0.0; points],
             scaled_stress: vec![Mat3::zeros(); points],

@@ -8,6 +8,8 @@ use crate::parallel;
 use crate::reference::Reference;
 use crate::state::{State, Workspace};
 
+mod drift;
+
 /// Which strain measures are integrated, and where they live.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Strains {
@@ -18,10 +20,18 @@ pub(crate) struct Strains {
 /// G_q = Σ_c (p_c/ρ) ⊗ B_qc at every point, 1/s.
 pub(crate) fn velocity_gradient(reference: &Reference, state: &State, work: &mut Workspace) {
     for body in &reference.bodies {
-        let momentum = &state.momentum[body.particles.clone()];
+        let range = body.particles.clone();
         let inverse_density = 1.0 / body.density;
-        parallel::fill(&mut work.velocity_gradient[body.points.clone()], |q| {
-            body.gradient.gradient_at(q, momentum) * inverse_density
+        let momentum = &state.momentum[range.clone()];
+        let padded = &mut work.padded_momentum[range];
+        parallel::fill(padded, |a| {
+            [momentum[a].x, momentum[a].y, momentum[a].z, 0.0]
+        });
+        let padded = &*padded;
+        let gradients = &mut work.velocity_gradient[body.points.clone()];
+        parallel::for_each_run(gradients, |offset, gradients| {
+            body.gradient
+                .scaled_gradients(offset, padded, inverse_density, gradients);
         });
     }
 }
@@ -45,26 +55,14 @@ pub(crate) fn drift(
         ..
     } = work;
     let bonds = strains.quadrature == Quadrature::Bonds;
-    parallel::for_each_triple(
+    let step = drift::Drift { bonds, dt };
+    parallel::for_each_chunk(
         &mut state.deformation_gradient,
         &mut state.cofactor,
         volume_change,
-        |q, f, h, change| {
-            let g = &velocity_gradient[q];
-            let start = *h;
-            let quarter = *f + g * (0.25 * dt);
-            let half = *f + g * (0.5 * dt);
-            let middle = start + tensor_cross(&quarter, g) * (0.5 * dt);
-            let end = start + tensor_cross(&half, g) * dt;
-            *f += g * dt;
-            *change = if bonds {
-                // tr(G F⁻¹) = H : G / det F with det F = ⅓ H : F.
-                3.0 * dt * double_dot(&middle, g) / double_dot(&middle, &half)
-            } else {
-                let simpson = start + middle * 4.0 + end;
-                dt / 6.0 * double_dot(&simpson, g)
-            };
-            *h = end;
+        |offset, f, h, change| {
+            let g = &velocity_gradient[offset..offset + f.len()];
+            step.advance(g, f, h, change);
         },
     );
     for body in &reference.bodies {

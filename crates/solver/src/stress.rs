@@ -14,6 +14,8 @@ use crate::reference::{BodyReference, Reference};
 use crate::state::{State, Workspace};
 use crate::strain::Strains;
 
+mod tile;
+
 /// What the points of one body see.
 #[derive(Clone, Copy)]
 struct Points<'a> {
@@ -33,6 +35,11 @@ impl Points<'_> {
         !self.strains.formulation.integrates_jacobian()
     }
 
+    /// Whether the points are the particles.
+    fn at_particles(&self) -> bool {
+        self.strains.quadrature == Quadrature::Particles
+    }
+
     /// det F by the unknowns F and H, ⅓ H : F.
     #[inline]
     fn determinant(&self, q: usize) -> f64 {
@@ -43,25 +50,28 @@ impl Points<'_> {
     /// logarithmic pressure of the point is the mean of its ends' pressures.
     #[inline]
     fn kinematics(&self, q: usize) -> Kinematics {
-        let jacobian = if self.without_jacobian() {
-            self.determinant(q)
-        } else {
-            let [a, b] = self.body.ends[q];
-            let (ja, jb) = (self.jacobian[a as usize], self.jacobian[b as usize]);
-            // A bond one of whose ends is inverted must not look sound.
-            if a == b {
-                ja
-            } else if ja > 0.0 && jb > 0.0 {
-                (ja * jb).sqrt()
-            } else {
-                ja.min(jb)
-            }
-        };
         Kinematics {
             deformation_gradient: self.deformation_gradient[q],
-            jacobian,
+            jacobian: self.jacobian(q),
             dt: self.dt,
             temperature: self.temperature(q),
+        }
+    }
+
+    #[inline]
+    fn jacobian(&self, q: usize) -> f64 {
+        if self.without_jacobian() {
+            return self.determinant(q);
+        }
+        let [a, b] = self.body.ends[q];
+        let (ja, jb) = (self.jacobian[a as usize], self.jacobian[b as usize]);
+        // A bond one of whose ends is inverted must not look sound.
+        if a == b {
+            ja
+        } else if ja > 0.0 && jb > 0.0 {
+            (ja * jb).sqrt()
+        } else {
+            ja.min(jb)
         }
     }
 
@@ -116,49 +126,86 @@ impl BlockVisitor for Evaluation<'_> {
             });
         }
         let volumetric_stress: &[f64] = self.volumetric_stress;
-        let at_particles = points.strains.quadrature == Quadrature::Particles;
-        // Only touched by a failing point; the smallest index makes the report deterministic.
-        let failed = AtomicUsize::new(usize::MAX);
-        parallel::for_each_triple(
+        let pass = PointPass {
+            points,
+            model,
+            volumetric_stress,
+            // Only touched by a failing point; the smallest index makes the report deterministic.
+            failed: AtomicUsize::new(usize::MAX),
+        };
+        parallel::for_each_chunk(
             self.scaled_stress,
             self.plastic_work,
             candidate,
-            |q, scaled_stress, plastic_work, candidate| {
-                let now = points.kinematics(q);
-                match model.respond(&now, &committed[q]) {
-                    Ok(response) => {
-                        let [a, b] = points.body.ends[q];
-                        let mut pressure = if without_jacobian {
-                            model.volumetric_stress(now.jacobian, now.temperature)
-                        } else {
-                            0.5 * (volumetric_stress[a as usize] + volumetric_stress[b as usize])
-                        };
-                        if pressure > 0.0 && !model.carries_tension(&response.history) {
-                            pressure = 0.0;
-                        }
-                        let mut stress = response.kirchhoff_stress;
-                        stress.m11 += pressure;
-                        stress.m22 += pressure;
-                        stress.m33 += pressure;
-                        // [eq:piola]: P = σ H with σ = τ/J (A.4); with bonds τ F⁻ᵀ, conjugate to tr(G F⁻¹).
-                        let jacobian = if at_particles {
-                            now.jacobian
-                        } else {
-                            points.determinant(q)
-                        };
-                        *scaled_stress =
-                            stress * points.cofactor[q] * (points.volume[q] / jacobian);
-                        *plastic_work = response.plastic_work;
-                        *candidate = response.history;
-                    }
-                    Err(_) => {
-                        failed.fetch_min(q, Ordering::Relaxed);
-                    }
-                }
+            |offset, scaled_stress, plastic_work, candidate| {
+                let out = tile::Output {
+                    scaled_stress,
+                    plastic_work,
+                    candidate,
+                };
+                pass.evaluate(offset, committed, out);
             },
         );
+        let failed = pass.failed;
         let failed = failed.into_inner();
         (failed != usize::MAX).then_some(failed)
+    }
+}
+
+/// The points of one body and what their stresses are made of.
+struct PointPass<'a, M: Material> {
+    points: Points<'a>,
+    model: &'a M,
+    volumetric_stress: &'a [f64],
+    failed: AtomicUsize,
+}
+
+impl<M: Material> PointPass<'_, M> {
+    /// τ_vol of a point: the mean of its ends, or its own where J is no unknown of its own.
+    #[inline]
+    fn pressure(&self, q: usize, jacobian: f64, temperature: f64, history: &M::History) -> f64 {
+        let pressure = if self.points.without_jacobian() {
+            self.model.volumetric_stress(jacobian, temperature)
+        } else {
+            let [a, b] = self.points.body.ends[q];
+            0.5 * (self.volumetric_stress[a as usize] + self.volumetric_stress[b as usize])
+        };
+        if pressure > 0.0 && !self.model.carries_tension(history) {
+            0.0
+        } else {
+            pressure
+        }
+    }
+
+    /// V P, plastic work and history of one point; nothing but the failure is written if it fails.
+    fn evaluate_point(
+        &self,
+        q: usize,
+        committed: &M::History,
+        scaled_stress: &mut Mat3,
+        plastic_work: &mut f64,
+        candidate: &mut M::History,
+    ) {
+        let points = &self.points;
+        let now = points.kinematics(q);
+        let Ok(response) = self.model.respond(&now, committed) else {
+            self.failed.fetch_min(q, Ordering::Relaxed);
+            return;
+        };
+        let pressure = self.pressure(q, now.jacobian, now.temperature, &response.history);
+        let mut stress = response.kirchhoff_stress;
+        stress.m11 += pressure;
+        stress.m22 += pressure;
+        stress.m33 += pressure;
+        // [eq:piola]: P = σ H with σ = τ/J (A.4); with bonds τ F⁻ᵀ, conjugate to tr(G F⁻¹).
+        let jacobian = if points.at_particles() {
+            now.jacobian
+        } else {
+            points.determinant(q)
+        };
+        *scaled_stress = stress * points.cofactor[q] * (points.volume[q] / jacobian);
+        *plastic_work = response.plastic_work;
+        *candidate = response.history;
     }
 }
 

@@ -7,6 +7,7 @@ use crate::rows::Rows;
 use crate::{Kernel, SphError};
 
 mod conforming;
+mod passes;
 
 pub use conforming::Correction;
 

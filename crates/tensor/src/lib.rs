@@ -17,6 +17,7 @@
 
 mod algebra;
 mod function;
+pub mod lanes;
 mod spectral;
 
 pub use algebra::{

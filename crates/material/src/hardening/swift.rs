@@ -38,6 +38,12 @@ const EXPONENT: Key = Key {
     optional: false,
 };
 
+/// Relative change of strain below which the series is used. Its coefficients are below 1/k: the first
+/// term left out is below 0.001⁶/6 < 1e-18.
+const SERIES_LIMIT: f64 = 1e-3;
+const SERIES_TERMS: u32 = 6;
+const RECIPROCALS: [f64; 6] = [0.0, 1.0, 1.0 / 2.0, 1.0 / 3.0, 1.0 / 4.0, 1.0 / 5.0];
+
 impl HardeningLaw for Swift {
     const NAME: &'static str = "swift";
     const SUMMARY: &'static str = "coefficient * (offset + eps_p)^exponent";
@@ -56,6 +62,23 @@ impl HardeningLaw for Swift {
         FlowStress::rate_independent(value, self.exponent * value / strain)
     }
 
+    /// The power by its binomial series: the plastic strain of one explicit step is a small part of
+    /// what is there.
+    #[inline]
+    fn flow_stress_near(&self, start: &FlowStress, from: f64, at: &FlowState) -> FlowStress {
+        let x = (at.plastic_strain - from) / (self.offset + from);
+        if x.abs() >= SERIES_LIMIT {
+            return self.flow_stress(at);
+        }
+        let mut sum = 1.0;
+        for k in (1..SERIES_TERMS).rev() {
+            sum = 1.0 + sum * x * ((self.exponent - f64::from(k - 1)) * RECIPROCALS[k as usize]);
+        }
+        let value = start.value * sum;
+        let strain = self.offset + at.plastic_strain;
+        FlowStress::rate_independent(value, self.exponent * value / strain)
+    }
+
     /// Al 1100 of Greto & Kulasegaram 2019, Sect. 4.3.
     fn examples() -> Vec<Self> {
         vec![Self {
@@ -63,5 +86,30 @@ impl HardeningLaw for Swift {
             offset: 0.02,
             exponent: 0.27,
         }]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_series_is_the_power_to_round_off() {
+        let law = &Swift::examples()[0];
+        let state = |plastic_strain: f64| FlowState {
+            plastic_strain,
+            rate: 0.0,
+            temperature: crate::ROOM_TEMPERATURE,
+        };
+        for from in [0.0, 1e-4, 0.03, 1.7] {
+            let start = law.flow_stress(&state(from));
+            for part in [-9.9e-4, 0.0, 1e-12, 1e-6, 5e-4, 9.99e-4, 1.01e-3, 0.3] {
+                let at = state(from + part * (law.offset + from));
+                let (near, direct) =
+                    (law.flow_stress_near(&start, from, &at), law.flow_stress(&at));
+                assert!((near.value / direct.value - 1.0).abs() < 6e-16, "{from} {part}");
+                assert!((near.slope / direct.slope - 1.0).abs() < 8e-16, "{from} {part}");
+            }
+        }
     }
 }

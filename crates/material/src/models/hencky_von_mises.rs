@@ -12,8 +12,9 @@ use crate::parameter::{
 use crate::return_map::RadialReturn;
 use crate::thermal::THERMAL;
 use crate::{
-    Damage, EquationOfState, History, JohnsonCookDamage, Key, Kinematics, Material, MaterialError,
-    MieGrueneisen, ParameterError, PlasticHistory, Property, Response, Thermal, WaveSpeeds,
+    Damage, EquationOfState, History, JohnsonCookDamage, Key, Kinematics, KinematicsTile, Material,
+    MaterialError, MieGrueneisen, ParameterError, PlasticHistory, Property, Response, ResponseTile,
+    Thermal, WaveSpeeds,
 };
 use jstsph_tensor::{Mat3, cofactor, norm_squared};
 use serde::{Deserialize, Serialize};
@@ -284,7 +285,10 @@ impl Material for HenckyVonMises {
             dt: now.dt,
             temperature: now.temperature,
         }
-        .plastic_increment(flow_stress, |at| self.hardening.flow_stress(at))?;
+        .plastic_increment(flow_stress, |at| {
+            self.hardening
+                .flow_stress_near(&flow_stress, old.equivalent_plastic_strain, at)
+        })?;
         let (equivalent_stress, plastic_work) = if flow_stress.value > 0.0 {
             let stress = trial_equivalent_stress - 3.0 * mu * increment;
             (stress, stress * increment)
@@ -315,6 +319,17 @@ impl Material for HenckyVonMises {
             )
             .with_damage(damage),
         })
+    }
+
+    #[inline]
+    fn respond_tile(
+        &self,
+        now: &KinematicsTile,
+        old: &[PlasticHistory],
+        new: &mut [PlasticHistory],
+        response: &mut ResponseTile,
+    ) -> bool {
+        tile::respond(self, now, old, new, response)
     }
 
     /// κ (ln J − 3 α (T − T_ref)).
@@ -437,6 +452,8 @@ pub(super) fn example_thermal() -> Thermal {
         reference_temperature: crate::ROOM_TEMPERATURE,
     }
 }
+
+mod tile;
 
 #[cfg(test)]
 mod homogeneous;

@@ -1,0 +1,127 @@
+//! F, H and the change of volume of points over one step with constant G: point by point, and the
+//! same for many points at once.
+
+use jstsph_tensor::lanes::{Simd, TILE, TensorTile, WithSimd, vectorised};
+use jstsph_tensor::{Mat3, double_dot, tensor_cross};
+
+/// A step of the leapfrog.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Drift {
+    /// Whether the change of volume is that of ln J, which bonds have, or that of J.
+    pub(super) bonds: bool,
+    /// s.
+    pub(super) dt: f64,
+}
+
+impl Drift {
+    /// Advances the points, tile by tile and the rest one by one.
+    pub(super) fn advance(&self, g: &[Mat3], f: &mut [Mat3], h: &mut [Mat3], change: &mut [f64]) {
+        let tiled = g.len() - g.len() % TILE;
+        vectorised(Tiles {
+            step: *self,
+            g: &g[..tiled],
+            f: &mut f[..tiled],
+            h: &mut h[..tiled],
+            change: &mut change[..tiled],
+        });
+        for q in tiled..g.len() {
+            change[q] = self.advance_point(&g[q], &mut f[q], &mut h[q]);
+        }
+    }
+
+    /// Advances F and H of one point and returns its change of volume.
+    fn advance_point(&self, g: &Mat3, f: &mut Mat3, h: &mut Mat3) -> f64 {
+        let dt = self.dt;
+        let start = *h;
+        let quarter = *f + g * (0.25 * dt);
+        let half = *f + g * (0.5 * dt);
+        let middle = start + tensor_cross(&quarter, g) * (0.5 * dt);
+        let end = start + tensor_cross(&half, g) * dt;
+        *f += g * dt;
+        *h = end;
+        if self.bonds {
+            // tr(G F⁻¹) = H : G / det F with det F = ⅓ H : F.
+            3.0 * dt * double_dot(&middle, g) / double_dot(&middle, &half)
+        } else {
+            let simpson = start + middle * 4.0 + end;
+            dt / 6.0 * double_dot(&simpson, g)
+        }
+    }
+}
+
+/// Whole tiles of points.
+struct Tiles<'a> {
+    step: Drift,
+    g: &'a [Mat3],
+    f: &'a mut [Mat3],
+    h: &'a mut [Mat3],
+    change: &'a mut [f64],
+}
+
+impl WithSimd for Tiles<'_> {
+    type Output = ();
+
+    /// The formulas of `advance_point`, in the same order.
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Drift { bonds, dt } = self.step;
+        let (mut g, mut f, mut h) = (TensorTile::ZERO, TensorTile::ZERO, TensorTile::ZERO);
+        let mut change = [0.0; TILE];
+        for start in (0..self.g.len()).step_by(TILE) {
+            let range = start..start + TILE;
+            g.read(&self.g[range.clone()]);
+            f.read(&self.f[range.clone()]);
+            h.read(&self.h[range.clone()]);
+            for pack in 0..TILE / S::F64_LANES {
+                let rate = g.load(simd, pack);
+                let begin = f.load(simd, pack);
+                let start = h.load(simd, pack);
+                let quarter = begin.plus(&rate, 0.25 * dt);
+                let half = begin.plus(&rate, 0.5 * dt);
+                let middle = start.plus(&quarter.cross(&rate), 0.5 * dt);
+                let end = start.plus(&half.cross(&rate), dt);
+                f.store(&begin.plus(&rate, dt), pack);
+                h.store(&end, pack);
+                let grown = if bonds {
+                    (middle.double_dot(&rate) * (3.0 * dt)).over(middle.double_dot(&half))
+                } else {
+                    let simpson = start.plus(&middle, 4.0).plus(&end, 1.0);
+                    simpson.double_dot(&rate) * (dt / 6.0)
+                };
+                grown.store(&mut change, pack);
+            }
+            f.write(&mut self.f[range.clone()]);
+            h.write(&mut self.h[range.clone()]);
+            self.change[range].copy_from_slice(&change);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Random;
+
+    #[test]
+    fn many_points_at_once_have_the_bits_of_single_points() {
+        let mut random = Random(11);
+        let count = 3 * TILE + 5;
+        let mut tensors = |size: f64, mean: Mat3| -> Vec<Mat3> {
+            (0..count).map(|_| mean + random.tensor() * size).collect()
+        };
+        let g = tensors(1e4, Mat3::zeros());
+        let f = tensors(0.3, Mat3::identity());
+        let h = tensors(0.3, Mat3::identity());
+        for bonds in [true, false] {
+            let step = Drift { bonds, dt: 1e-5 };
+            let (mut many_f, mut many_h, mut change) = (f.clone(), h.clone(), vec![0.0; count]);
+            step.advance(&g, &mut many_f, &mut many_h, &mut change);
+            for q in 0..count {
+                let (mut one_f, mut one_h) = (f[q], h[q]);
+                let grown = step.advance_point(&g[q], &mut one_f, &mut one_h);
+                assert_eq!((many_f[q], many_h[q]), (one_f, one_h), "point {q}");
+                assert_eq!(change[q], grown, "point {q}");
+            }
+        }
+    }
+}

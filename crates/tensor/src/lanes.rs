@@ -1,0 +1,391 @@
+//! Several points at once: the same formulas on vectors of numbers, one lane per point.
+//!
+//! The instruction set is chosen while the program runs (AVX-512, AVX2 with FMA, else plain scalars),
+//! so that a portable binary uses what the machine has. Every lane rounds as the scalar formula
+//! does: no operation is contracted, and the width of the machine does not change a bit.
+//!
+//! ```
+//! use jstsph_tensor::lanes::{Lanes, Simd, TILE, WithSimd, vectorised};
+//!
+//! struct Square<'a>(&'a mut [f64; TILE]);
+//! impl WithSimd for Square<'_> {
+//!     type Output = ();
+//!     #[inline(always)]
+//!     fn with_simd<S: Simd>(self, simd: S) {
+//!         for pack in 0..TILE / S::F64_LANES {
+//!             let x = Lanes::load(simd, self.0, pack);
+//!             (x * x).store(self.0, pack);
+//!         }
+//!     }
+//! }
+//! let mut tile = [3.0; TILE];
+//! vectorised(Square(&mut tile));
+//! assert_eq!(tile, [9.0; TILE]);
+//! ```
+
+use std::ops::{Add, Mul, Neg, Sub};
+
+use crate::Mat3;
+
+pub use pulp::{Simd, WithSimd};
+
+/// Points that are worked on together. Enough that what is written number by number has left the
+/// store buffer when it is read as vectors, few enough that a dozen tiles stay in the first cache.
+pub const TILE: usize = 32;
+
+/// Runs an operation with the widest instruction set of the machine.
+#[inline]
+pub fn vectorised<Op: WithSimd>(operation: Op) -> Op::Output {
+    pulp::Arch::new().dispatch(operation)
+}
+
+/// One number for each of some neighbouring points.
+#[derive(Clone, Copy, Debug)]
+pub struct Lanes<S: Simd> {
+    simd: S,
+    values: S::f64s,
+}
+
+impl<S: Simd> Lanes<S> {
+    /// The same number in every lane.
+    #[inline(always)]
+    #[must_use]
+    pub fn splat(simd: S, value: f64) -> Self {
+        Self {
+            simd,
+            values: simd.splat_f64s(value),
+        }
+    }
+
+    /// The `pack`-th vector of a tile.
+    #[inline(always)]
+    #[must_use]
+    pub fn load(simd: S, tile: &[f64; TILE], pack: usize) -> Self {
+        Self {
+            simd,
+            values: S::as_simd_f64s(tile).0[pack],
+        }
+    }
+
+    /// Writes the `pack`-th vector of a tile.
+    #[inline(always)]
+    pub fn store(self, tile: &mut [f64; TILE], pack: usize) {
+        S::as_mut_simd_f64s(tile).0[pack] = self.values;
+    }
+
+    /// 1/x.
+    #[inline(always)]
+    #[must_use]
+    pub fn inverse(self) -> Self {
+        Self {
+            values: self.simd.div_f64s(self.simd.splat_f64s(1.0), self.values),
+            ..self
+        }
+    }
+
+    /// x/y.
+    #[inline(always)]
+    #[must_use]
+    pub fn over(self, divisor: Self) -> Self {
+        Self {
+            values: self.simd.div_f64s(self.values, divisor.values),
+            ..self
+        }
+    }
+
+    /// √x.
+    #[inline(always)]
+    #[must_use]
+    pub fn sqrt(self) -> Self {
+        Self {
+            values: self.simd.sqrt_f64s(self.values),
+            ..self
+        }
+    }
+
+    /// The largest of the lanes; any number if one of them is none.
+    #[inline(always)]
+    #[must_use]
+    pub fn largest(self) -> f64 {
+        self.simd.reduce_max_f64s(self.values)
+    }
+
+    /// Lane by lane `if self < limit { yes } else { no }`; not a number is not less.
+    #[inline(always)]
+    #[must_use]
+    pub fn if_less(self, limit: f64, yes: Self, no: Self) -> Self {
+        let mask = self
+            .simd
+            .less_than_f64s(self.values, self.simd.splat_f64s(limit));
+        Self {
+            values: self.simd.select_f64s(mask, yes.values, no.values),
+            ..self
+        }
+    }
+}
+
+impl<S: Simd> Add for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self {
+            values: self.simd.add_f64s(self.values, other.values),
+            ..self
+        }
+    }
+}
+
+impl<S: Simd> Sub for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self {
+            values: self.simd.sub_f64s(self.values, other.values),
+            ..self
+        }
+    }
+}
+
+impl<S: Simd> Mul for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self {
+            values: self.simd.mul_f64s(self.values, other.values),
+            ..self
+        }
+    }
+}
+
+impl<S: Simd> Mul<f64> for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: f64) -> Self {
+        self * Self::splat(self.simd, other)
+    }
+}
+
+impl<S: Simd> Neg for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self {
+            values: self.simd.neg_f64s(self.values),
+            ..self
+        }
+    }
+}
+
+/// The `pack`-th vectors of several tiles.
+// Here and below loops instead of closures: a closure that is compiled on its own has not the
+// instruction set of the function around it.
+#[inline(always)]
+#[must_use]
+pub fn load_all<S: Simd, const N: usize>(
+    simd: S,
+    tiles: &[[f64; TILE]; N],
+    pack: usize,
+) -> [Lanes<S>; N] {
+    let mut lanes = [Lanes::splat(simd, 0.0); N];
+    for k in 0..N {
+        lanes[k] = Lanes::load(simd, &tiles[k], pack);
+    }
+    lanes
+}
+
+/// Writes the `pack`-th vectors of several tiles.
+#[inline(always)]
+pub fn store_all<S: Simd, const N: usize>(
+    lanes: &[Lanes<S>; N],
+    tiles: &mut [[f64; TILE]; N],
+    pack: usize,
+) {
+    for k in 0..N {
+        lanes[k].store(&mut tiles[k], pack);
+    }
+}
+
+/// Every lane vector of a list times the same one.
+#[inline(always)]
+#[must_use]
+pub fn times<S: Simd, const N: usize>(list: &[Lanes<S>; N], factor: Lanes<S>) -> [Lanes<S>; N] {
+    let mut scaled = *list;
+    for value in &mut scaled {
+        *value = *value * factor;
+    }
+    scaled
+}
+
+/// A tile of tensors, component by component in the order 11, 21, 31, 12, 22, 32, 13, 23, 33.
+#[derive(Clone, Debug)]
+pub struct TensorTile(pub [[f64; TILE]; 9]);
+
+impl TensorTile {
+    /// All zero.
+    pub const ZERO: Self = Self([[0.0; TILE]; 9]);
+
+    /// Reads [`TILE`] tensors.
+    ///
+    /// # Panics
+    /// If there are fewer: a bug in the caller.
+    // Not inlined: with a wide instruction set the compiler would gather and scatter, which takes
+    // several times as long as moving number by number.
+    #[inline(never)]
+    pub fn read(&mut self, tensors: &[Mat3]) {
+        let tensors = &tensors[..TILE];
+        for (i, tensor) in tensors.iter().enumerate() {
+            let columns: &[[f64; 3]; 3] = tensor.as_ref();
+            for (k, component) in columns.as_flattened().iter().enumerate() {
+                self.0[k][i] = *component;
+            }
+        }
+    }
+
+    /// Writes [`TILE`] tensors.
+    ///
+    /// # Panics
+    /// If there are fewer: a bug in the caller.
+    #[inline(never)]
+    pub fn write(&self, tensors: &mut [Mat3]) {
+        let tensors = &mut tensors[..TILE];
+        for (i, tensor) in tensors.iter_mut().enumerate() {
+            let columns: &mut [[f64; 3]; 3] = tensor.as_mut();
+            for (k, component) in columns.as_flattened_mut().iter_mut().enumerate() {
+                *component = self.0[k][i];
+            }
+        }
+    }
+
+    /// The `pack`-th vectors of all components.
+    #[inline(always)]
+    #[must_use]
+    pub fn load<S: Simd>(&self, simd: S, pack: usize) -> TensorLanes<S> {
+        TensorLanes(load_all(simd, &self.0, pack))
+    }
+
+    /// Writes the `pack`-th vectors of all components.
+    #[inline(always)]
+    pub fn store<S: Simd>(&mut self, lanes: &TensorLanes<S>, pack: usize) {
+        store_all(&lanes.0, &mut self.0, pack);
+    }
+}
+
+/// One tensor for each of some neighbouring points; components as in [`TensorTile`].
+#[derive(Clone, Copy, Debug)]
+pub struct TensorLanes<S: Simd>(pub [Lanes<S>; 9]);
+
+impl<S: Simd> TensorLanes<S> {
+    /// A + B s.
+    #[inline(always)]
+    #[must_use]
+    pub fn plus(&self, other: &Self, factor: f64) -> Self {
+        let mut sum = *self;
+        for k in 0..9 {
+            sum.0[k] = self.0[k] + other.0[k] * factor;
+        }
+        sum
+    }
+
+    /// A : B, in the order of [`double_dot`](crate::double_dot).
+    #[inline(always)]
+    #[must_use]
+    pub fn double_dot(&self, other: &Self) -> Lanes<S> {
+        let [a11, a21, a31, a12, a22, a32, a13, a23, a33] = self.0;
+        let [b11, b21, b31, b12, b22, b32, b13, b23, b33] = other.0;
+        (a11 * b11 + a21 * b21 + a31 * b31)
+            + (a12 * b12 + a22 * b22 + a32 * b32)
+            + (a13 * b13 + a23 * b23 + a33 * b33)
+    }
+
+    /// A × B, in the order of [`tensor_cross`](crate::tensor_cross).
+    #[inline(always)]
+    #[must_use]
+    pub fn cross(&self, other: &Self) -> Self {
+        let [a11, a21, a31, a12, a22, a32, a13, a23, a33] = self.0;
+        let [b11, b21, b31, b12, b22, b32, b13, b23, b33] = other.0;
+        Self([
+            a22 * b33 - a23 * b32 + a33 * b22 - a32 * b23,
+            a13 * b32 - a12 * b33 + a32 * b13 - a33 * b12,
+            a12 * b23 - a13 * b22 + a23 * b12 - a22 * b13,
+            a23 * b31 - a21 * b33 + a31 * b23 - a33 * b21,
+            a33 * b11 - a31 * b13 + a11 * b33 - a13 * b31,
+            a13 * b21 - a11 * b23 + a21 * b13 - a23 * b11,
+            a21 * b32 - a22 * b31 + a32 * b21 - a31 * b22,
+            a31 * b12 - a32 * b11 + a12 * b31 - a11 * b32,
+            a11 * b22 - a12 * b21 + a22 * b11 - a21 * b12,
+        ])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{double_dot, tensor_cross};
+
+    struct Products<'a> {
+        a: &'a TensorTile,
+        b: &'a TensorTile,
+        cross: &'a mut TensorTile,
+        dot: &'a mut [f64; TILE],
+    }
+
+    impl WithSimd for Products<'_> {
+        type Output = ();
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) {
+            for pack in 0..TILE / S::F64_LANES {
+                let (a, b) = (self.a.load(simd, pack), self.b.load(simd, pack));
+                self.cross.store(&a.cross(&b), pack);
+                a.double_dot(&b).store(self.dot, pack);
+            }
+        }
+    }
+
+    #[test]
+    fn lanes_have_the_bits_of_the_scalar_formulas() {
+        let sample = |i: usize, phase: f64| {
+            Mat3::from_fn(|r, c| (1.7 * i as f64 + 0.9 * (r + 3 * c) as f64 + phase).sin())
+        };
+        let a: Vec<_> = (0..TILE).map(|i| sample(i, 0.1)).collect();
+        let b: Vec<_> = (0..TILE).map(|i| sample(i, 2.3)).collect();
+        let (mut at, mut bt, mut cross) = (TensorTile::ZERO, TensorTile::ZERO, TensorTile::ZERO);
+        at.read(&a);
+        bt.read(&b);
+        let mut dot = [0.0; TILE];
+        let products = Products {
+            a: &at,
+            b: &bt,
+            cross: &mut cross,
+            dot: &mut dot,
+        };
+        vectorised(products);
+        let mut crossed = vec![Mat3::zeros(); TILE];
+        cross.write(&mut crossed);
+        for i in 0..TILE {
+            assert_eq!(crossed[i], tensor_cross(&a[i], &b[i]));
+            assert_eq!(dot[i], double_dot(&a[i], &b[i]));
+        }
+    }
+
+    #[test]
+    fn a_number_that_is_none_is_not_less() {
+        struct Choose<'a>(&'a mut [f64; TILE]);
+        impl WithSimd for Choose<'_> {
+            type Output = ();
+            #[inline(always)]
+            fn with_simd<S: Simd>(self, simd: S) {
+                let (yes, no) = (Lanes::splat(simd, 1.0), Lanes::splat(simd, -1.0));
+                for pack in 0..TILE / S::F64_LANES {
+                    let x = Lanes::load(simd, self.0, pack);
+                    x.if_less(5.0, yes, no).store(self.0, pack);
+                }
+            }
+        }
+        let mut tile: [f64; TILE] = std::array::from_fn(|i| i as f64);
+        tile[1] = f64::NAN;
+        vectorised(Choose(&mut tile));
+        let expected: [f64; TILE] =
+            std::array::from_fn(|i| if i < 5 && i != 1 { 1.0 } else { -1.0 });
+        assert_eq!(tile, expected);
+    }
+}
