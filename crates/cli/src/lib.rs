@@ -31,6 +31,7 @@ mod reproduce;
 mod restart;
 mod shells;
 mod simulate;
+mod stability;
 mod sweep;
 mod templates;
 mod verdict;

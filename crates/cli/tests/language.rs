@@ -40,7 +40,7 @@ fn completions_and_manual_know_every_command() {
         );
     }
     assert_eq!(jstsph(&["completions", "dos"]).code, 2);
-    let page = jstsph(&["man"]);
+    let page = place.jstsph("jstsph man");
     assert!(page.out.contains(".TH jstsph 1"), "{}", page.out);
     let folder = place.folder.path().join("man");
     let written = jstsph(&["man", folder.to_str().expect("a name")]);
@@ -89,7 +89,7 @@ fn a_sweep_runs_every_combination_and_reuses_what_is_finished() {
     };
     let outcome = run("obstacle.wall.friction=0,0.5");
     assert_eq!(outcome.code, 0, "{}{}", outcome.out, outcome.err);
-    let csv = std::fs::read_to_string(out.join("sweep.csv")).expect("a table");
+    let csv = place.text("study/sweep.csv");
     assert_eq!(column(&csv, "status"), ["completed"; 4]);
     assert_eq!(
         column(&csv, "obstacle.wall.friction"),
@@ -126,8 +126,7 @@ fn a_sweep_runs_every_combination_and_reuses_what_is_finished() {
     let summary: serde_json::Value = serde_json::from_str(&summary).expect("JSON");
     let length: f64 = column(&csv, "length")[0].parse().expect("a number");
     assert_eq!(Some(length), summary["probes"]["length"].as_f64());
-    let png = std::fs::read(out.join("sweep.png")).expect("a plot");
-    assert!(png.len() > 5000);
+    assert!(place.bytes("study/sweep.png").len() > 5000);
 
     let outcome = run("obstacle.wall.friction=0,0.5,1");
     assert_eq!(outcome.code, 0, "{}{}", outcome.out, outcome.err);
