@@ -115,7 +115,7 @@ fn read_lattice(
 ) -> Result<(Lattice, Origin), Problem> {
     let field = section.need("lattice")?;
     let mut part = Section::open(&field.node, &field.path, schema::LATTICE)?;
-    let kind = part.one_of(&["spacing", "counts", "per_radius", "rings"])?;
+    let kind = part.one_of(schema::FILLINGS)?;
     for (key, with) in [
         ("layers", &["per_radius", "rings"][..]),
         ("per_ring", &["rings"]),

@@ -27,15 +27,7 @@ pub(crate) fn read_boundary(
         (None, _) => format!("boundary-{number}"),
     };
     section.record("name", name.as_str());
-    let form = section.one_of(&[
-        "fixed",
-        "roller",
-        "velocity",
-        "traction",
-        "temperature",
-        "heat_flux",
-        "convection",
-    ])?;
+    let form = section.one_of(schema::CONDITIONS)?;
     let positions: Vec<Vec3> = selected
         .particles
         .iter()

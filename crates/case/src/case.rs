@@ -8,8 +8,10 @@ use crate::body::{BodyPlace, Context, read_body};
 use crate::boundary::read_boundary;
 use crate::document::{self, Node, Value};
 use crate::error::{CaseError, Origin, Problem, Source};
+use crate::include;
 use crate::material::{self, Materials};
 use crate::obstacle::read_obstacle;
+use crate::parameters;
 use crate::plausibility::{self, Facts};
 use crate::probe::read_probe;
 use crate::resolved;
@@ -116,19 +118,20 @@ pub fn parse(
     text: &str,
     overrides: &[(String, String)],
 ) -> Result<Case, CaseError> {
-    let source = Source {
+    let mut source = Source {
         file: file.to_owned(),
         text: text.to_owned(),
         overrides: overrides.to_vec(),
+        included: Vec::new(),
     };
-    match read(name, &source) {
+    match read(name, &mut source) {
         Ok(case) => Ok(case),
         Err(problem) => Err(source.locate(problem)),
     }
 }
 
-fn read(name: &str, source: &Source) -> Result<Case, Problem> {
-    let document = document::parse(&source.text, &source.overrides)?;
+fn read(name: &str, source: &mut Source) -> Result<Case, Problem> {
+    let document = document(source)?;
     let mut section = Section::open(&document, "", schema::CASE)?;
     let empty = Node {
         value: Value::Table(Vec::new()),
@@ -228,6 +231,27 @@ fn read(name: &str, source: &Source) -> Result<Case, Problem> {
         source: source.clone(),
         places,
     })
+}
+
+/// The document with included files and overrides, its expressions calculated.
+fn document(source: &mut Source) -> Result<Node, Problem> {
+    let mut document = document::parse(&source.text, &Origin::File)?;
+    // What is included must be known before the other overrides reach into it.
+    let (first, then): (Vec<_>, Vec<_>) = source
+        .overrides
+        .clone()
+        .into_iter()
+        .enumerate()
+        .partition(|(_, (key, _))| key.split('.').next() == Some("include"));
+    for (index, entry) in first {
+        document::set(&mut document, index, &entry)?;
+    }
+    include::merge(&mut document, source)?;
+    for (index, entry) in then {
+        document::set(&mut document, index, &entry)?;
+    }
+    parameters::resolve(&mut document)?;
+    Ok(document)
 }
 
 /// Tables of a list, none when the list is not written.

@@ -4,6 +4,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::error::{Origin, Problem};
+use crate::units::Measure;
 
 /// A value and its place.
 #[derive(Clone, Debug)]
@@ -22,6 +23,16 @@ pub(crate) enum Value {
     Array(Vec<Node>),
     Table(Vec<Entry>),
     Date,
+    /// What an expression of parameters (`"= 2 * radius"`) came to.
+    Calculated(Calculated),
+}
+
+/// A number in SI units with its dimension, and the expression it comes from.
+#[derive(Clone, Debug)]
+pub(crate) struct Calculated {
+    pub(crate) value: f64,
+    pub(crate) measure: Measure,
+    pub(crate) text: String,
 }
 
 /// One key of a table.
@@ -43,6 +54,7 @@ impl Value {
             Self::Array(_) => "an array",
             Self::Table(_) => "a table",
             Self::Date => "a date",
+            Self::Calculated(_) => "a calculated number",
         }
     }
 }
@@ -57,10 +69,13 @@ impl Node {
     }
 }
 
-/// Reads the text and applies the overrides in their order.
-pub(crate) fn parse(text: &str, overrides: &[(String, String)]) -> Result<Node, Problem> {
+/// Reads the text of a case; `origin` makes places of byte ranges.
+pub(crate) fn parse(
+    text: &str,
+    origin: &dyn Fn(std::ops::Range<usize>) -> Origin,
+) -> Result<Node, Problem> {
     let table = DeTable::parse(text).map_err(|error| {
-        let origin = Origin::File(error.span().unwrap_or(0..0));
+        let origin = origin(error.span().unwrap_or(0..0));
         let mut lines = error.message().lines();
         let problem = Problem::new(
             &origin,
@@ -68,12 +83,17 @@ pub(crate) fn parse(text: &str, overrides: &[(String, String)]) -> Result<Node, 
         );
         lines.fold(problem, |problem, line| problem.help(line.trim()))
     })?;
-    let mut document = table_node(table.get_ref(), &|span| Origin::File(span), table.span())?;
-    for (index, (key, value)) in overrides.iter().enumerate() {
-        let node = override_value(value, index)?;
-        place(&mut document, key, key.split('.'), node, index)?;
-    }
-    Ok(document)
+    table_node(table.get_ref(), origin, table.span())
+}
+
+/// Applies override number `index`, `(dotted key, value)`.
+pub(crate) fn set(
+    document: &mut Node,
+    index: usize,
+    (key, value): &(String, String),
+) -> Result<(), Problem> {
+    let node = override_value(value, index)?;
+    place(document, key, key.split('.'), node, index)
 }
 
 type OriginOf<'a> = &'a dyn Fn(std::ops::Range<usize>) -> Origin;
@@ -231,7 +251,9 @@ mod tests {
         "[time]\nend = \"45 ms\"\n[[body]]\nname = \"billet\"\nlattice = { counts = [8, 50] }\n";
 
     fn with(key: &str, value: &str) -> Result<Node, Problem> {
-        parse(TEXT, &[(key.to_owned(), value.to_owned())])
+        let mut document = parse(TEXT, &Origin::File)?;
+        set(&mut document, 0, &(key.to_owned(), value.to_owned()))?;
+        Ok(document)
     }
 
     fn get<'a>(node: &'a Node, path: &str) -> &'a Node {
@@ -243,7 +265,7 @@ mod tests {
 
     #[test]
     fn values_remember_their_place() {
-        let document = parse(TEXT, &[]).expect("valid");
+        let document = parse(TEXT, &Origin::File).expect("valid");
         let end = get(&document, "time.end");
         let Origin::File(range) = &end.origin else {
             panic!("in the file")
@@ -292,7 +314,7 @@ mod tests {
 
     #[test]
     fn broken_toml_is_located() {
-        let problem = parse("a = 1\nb = = 2\n", &[]).expect_err("not TOML");
+        let problem = parse("a = 1\nb = = 2\n", &Origin::File).expect_err("not TOML");
         assert!(problem.message.starts_with("not TOML"), "{problem:?}");
         assert!(matches!(problem.origin, Origin::File(range) if (10..=11).contains(&range.start)));
     }

@@ -109,6 +109,8 @@ impl std::error::Error for InputError {}
 pub(crate) enum Origin {
     /// Byte range of the case file.
     File(Range<usize>),
+    /// Byte range of included file number so-and-so.
+    Included(usize, Range<usize>),
     /// Number of the override.
     Override(usize),
 }
@@ -157,48 +159,56 @@ pub(crate) struct Source {
     pub(crate) file: String,
     pub(crate) text: String,
     pub(crate) overrides: Vec<(String, String)>,
+    /// Path and text of included files.
+    pub(crate) included: Vec<(String, String)>,
 }
 
 impl Source {
     pub(crate) fn locate(&self, problem: Problem) -> CaseError {
+        let mut file = &self.file;
         let place = match problem.origin {
             Origin::Override(index) => Place::Override {
                 key: self.overrides[index].0.clone(),
                 value: self.overrides[index].1.clone(),
             },
-            Origin::File(range) => self.place(&range),
+            Origin::File(range) => place(&self.text, &range),
+            Origin::Included(number, range) => {
+                let (path, text) = &self.included[number];
+                file = path;
+                place(text, &range)
+            }
         };
         CaseError::Input(Box::new(InputError {
-            file: self.file.clone(),
+            file: file.clone(),
             place,
             message: problem.message,
             help: problem.help,
         }))
     }
+}
 
-    fn place(&self, range: &Range<usize>) -> Place {
-        let start = self.boundary(range.start);
-        let line_start = self.text[..start].rfind('\n').map_or(0, |at| at + 1);
-        let line_end = self.text[start..]
-            .find('\n')
-            .map_or(self.text.len(), |at| start + at);
-        let end = self.boundary(range.end).clamp(start, line_end);
-        Place::File {
-            line: self.text[..start].matches('\n').count() + 1,
-            column: self.text[line_start..start].chars().count() + 1,
-            text: self.text[line_start..line_end].trim_end().to_owned(),
-            width: self.text[start..end].trim_end().chars().count().max(1),
-        }
+fn place(source: &str, range: &Range<usize>) -> Place {
+    let start = boundary(source, range.start);
+    let line_start = source[..start].rfind('\n').map_or(0, |at| at + 1);
+    let line_end = source[start..]
+        .find('\n')
+        .map_or(source.len(), |at| start + at);
+    let end = boundary(source, range.end).clamp(start, line_end);
+    Place::File {
+        line: source[..start].matches('\n').count() + 1,
+        column: source[line_start..start].chars().count() + 1,
+        text: source[line_start..line_end].trim_end().to_owned(),
+        width: source[start..end].trim_end().chars().count().max(1),
     }
+}
 
-    /// The nearest character boundary at or below a byte position.
-    fn boundary(&self, mut at: usize) -> usize {
-        at = at.min(self.text.len());
-        while !self.text.is_char_boundary(at) {
-            at -= 1;
-        }
-        at
+/// The nearest character boundary at or below a byte position.
+fn boundary(text: &str, mut at: usize) -> usize {
+    at = at.min(text.len());
+    while !text.is_char_boundary(at) {
+        at -= 1;
     }
+    at
 }
 
 #[cfg(test)]
@@ -210,6 +220,7 @@ mod tests {
             file: "a.toml".to_owned(),
             text: text.to_owned(),
             overrides: vec![("time.end".to_owned(), "0".to_owned())],
+            included: Vec::new(),
         }
     }
 

@@ -5,6 +5,12 @@
 
 use std::fmt;
 
+use crate::units::{Measure, ZERO_CELSIUS};
+
+mod measured;
+
+pub(crate) use measured::Quantity;
+
 /// A function of one argument with its name.
 pub type Function = (&'static str, fn(f64) -> f64);
 /// A function of two arguments with its name.
@@ -57,11 +63,15 @@ enum Binary {
 #[derive(Clone, Debug)]
 enum Term {
     Number(f64),
+    /// SI value of a number with a unit, and its dimension.
+    Quantity(f64, Measure),
+    /// Degrees Celsius.
+    Celsius(f64),
     Variable(usize),
     Negative(Box<Term>),
     Binary(Binary, Box<Term>, Box<Term>),
-    Call(fn(f64) -> f64, Box<Term>),
-    CallTwo(fn(f64, f64) -> f64, Box<Term>, Box<Term>),
+    Call(&'static Function, Box<Term>),
+    CallTwo(&'static FunctionOfTwo, Box<Term>, Box<Term>),
 }
 
 /// A checked expression of named variables.
@@ -106,11 +116,20 @@ impl Expression {
     /// # Errors
     /// [`ExpressionError`] with the character where reading stopped.
     pub fn parse(text: &str, variables: &[&str]) -> Result<Self, ExpressionError> {
+        Self::parse_with(text, variables, false)
+    }
+
+    fn parse_with(
+        text: &str,
+        variables: &[&str],
+        has_units: bool,
+    ) -> Result<Self, ExpressionError> {
         let mut parser = Parser {
             characters: text.chars().collect(),
             at: 0,
             depth: 0,
             variables,
+            has_units,
         };
         if parser.characters.len() > LONGEST {
             return Err(parser.error(format!("longer than {LONGEST} characters")));
@@ -142,11 +161,12 @@ impl Expression {
 impl Term {
     fn evaluate(&self, values: &[f64]) -> f64 {
         match self {
-            Self::Number(value) => *value,
+            Self::Number(value) | Self::Quantity(value, _) => *value,
+            Self::Celsius(value) => value + ZERO_CELSIUS,
             Self::Variable(index) => values[*index],
             Self::Negative(term) => -term.evaluate(values),
-            Self::Call(function, term) => function(term.evaluate(values)),
-            Self::CallTwo(function, a, b) => function(a.evaluate(values), b.evaluate(values)),
+            Self::Call((_, function), term) => function(term.evaluate(values)),
+            Self::CallTwo((_, function), a, b) => function(a.evaluate(values), b.evaluate(values)),
             Self::Binary(operator, a, b) => {
                 let (a, b) = (a.evaluate(values), b.evaluate(values));
                 match operator {
@@ -162,7 +182,7 @@ impl Term {
 
     fn uses(&self, index: usize) -> bool {
         match self {
-            Self::Number(_) => false,
+            Self::Number(_) | Self::Quantity(..) | Self::Celsius(_) => false,
             Self::Variable(variable) => *variable == index,
             Self::Negative(term) | Self::Call(_, term) => term.uses(index),
             Self::Binary(_, a, b) | Self::CallTwo(_, a, b) => a.uses(index) || b.uses(index),
@@ -175,6 +195,7 @@ struct Parser<'a> {
     at: usize,
     depth: usize,
     variables: &'a [&'a str],
+    has_units: bool,
 }
 
 impl Parser<'_> {
@@ -293,6 +314,11 @@ impl Parser<'_> {
             end += 1;
         }
         let text: String = self.characters[start..end].iter().collect();
+        if self.has_units
+            && let Some(term) = self.with_unit(&text, end)?
+        {
+            return Ok(term);
+        }
         let value = text
             .parse()
             .map_err(|_| self.error(format!("`{text}` is not a number")))?;
@@ -316,19 +342,19 @@ impl Parser<'_> {
         if let Some((_, value)) = CONSTANTS.iter().find(|(known, _)| *known == name) {
             return Ok(Term::Number(*value));
         }
-        if let Some((_, function)) = FUNCTIONS.iter().find(|(known, _)| *known == name) {
+        if let Some(function) = FUNCTIONS.iter().find(|(known, _)| *known == name) {
             self.expect('(')?;
             let argument = self.sum()?;
             self.expect(')')?;
-            return Ok(Term::Call(*function, Box::new(argument)));
+            return Ok(Term::Call(function, Box::new(argument)));
         }
-        if let Some((_, function)) = FUNCTIONS_OF_TWO.iter().find(|(known, _)| *known == name) {
+        if let Some(function) = FUNCTIONS_OF_TWO.iter().find(|(known, _)| *known == name) {
             self.expect('(')?;
             let first = self.sum()?;
             self.expect(',')?;
             let second = self.sum()?;
             self.expect(')')?;
-            return Ok(Term::CallTwo(*function, Box::new(first), Box::new(second)));
+            return Ok(Term::CallTwo(function, Box::new(first), Box::new(second)));
         }
         Err(ExpressionError {
             message: format!("unknown name `{name}`"),

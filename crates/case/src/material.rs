@@ -264,7 +264,7 @@ fn in_temperature(node: &Node, path: &str, key: &Key) -> Result<toml::Value, Pro
 }
 
 /// The material crate names units as this crate writes them.
-fn measure_of(key: &Key) -> Measure {
+pub(crate) fn measure_of(key: &Key) -> Measure {
     if key.unit == "-" {
         return Measure::NUMBER;
     }
@@ -312,7 +312,7 @@ hardening = { johnson_cook = { a = "420 MPa", b = "465 MPa", n = 0.5, c = 0.08, 
 "#;
 
     fn read(text: &str) -> Result<MaterialSpec, String> {
-        let node = crate::document::parse(text, &[]).expect("TOML");
+        let node = crate::document::parse(text, &Origin::File).expect("TOML");
         read_material(&node, "material.al").map_err(|problem| problem.message)
     }
 
@@ -415,7 +415,7 @@ hardening = { johnson_cook = { a = "420 MPa", b = "465 MPa", n = 0.5, c = 0.08, 
     fn every_shipped_material_survives_its_own_table() {
         for material in library() {
             let text = toml::to_string(&material.spec).expect("a table");
-            let node = crate::document::parse(&text, &[]).expect("TOML");
+            let node = crate::document::parse(&text, &Origin::File).expect("TOML");
             assert_eq!(
                 read_material(&node, material.name).expect(material.name),
                 material.spec

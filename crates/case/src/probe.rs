@@ -26,14 +26,7 @@ pub(crate) fn read_probe(
         return Err(section.problem("name", format!("two probes are called `{name}`")));
     }
     section.rename(format!("probe.{name}"));
-    let form = section.one_of(&[
-        "extent",
-        "radius",
-        "edge_radius",
-        "statistic",
-        "point",
-        "line",
-    ])?;
+    let form = section.one_of(schema::PROBE_QUANTITIES)?;
     let field = section.need(form)?;
     let mut part = Section::open(&field.node, &field.path, field.kind.keys())?;
     let kind = match form {

@@ -11,8 +11,10 @@ mod conditions;
 mod numerics;
 
 pub use bodies::{BODY, LATTICE, SELECTION, SHAPES};
-pub(crate) use bodies::{BOX, HALF_SPACE, INITIAL_VELOCITY, ROTATION, SIGNAL};
-pub use conditions::{BOUNDARY, CHAIN, FIELDS, OBSTACLE, OBSTACLE_FORMS, PROBE};
+pub(crate) use bodies::{BOX, FILLINGS, HALF_SPACE, INITIAL_VELOCITY, ROTATION, SIGNAL};
+pub use conditions::{
+    BOUNDARY, CHAIN, CONDITIONS, FIELDS, OBSTACLE, OBSTACLE_FORMS, PROBE, PROBE_QUANTITIES,
+};
 pub(crate) use conditions::{
     CONVECTION, OBSTACLE_HEAT, PROFILE, SIDES, STATISTICS, VELOCITY_COMPONENTS,
 };
@@ -37,6 +39,21 @@ pub const CASE: &[Key] = &[
         "plane strain in x, y, or solid",
     ),
     key(
+        "include",
+        Other("a list of paths", Form::Paths),
+        Optional,
+        "files with further [material.NAME.MODEL] tables, relative to the folder of the case",
+    ),
+    key(
+        "parameters",
+        Other(
+            "named numbers, with unit or as \"= expression\"",
+            Form::Parameters,
+        ),
+        Optional,
+        "values to use by name, as in \"= 2 * radius + 1 mm\"; change them with --set parameters.NAME",
+    ),
+    key(
         "time",
         Table(TIME),
         Required,
@@ -57,7 +74,10 @@ pub const CASE: &[Key] = &[
     ),
     key(
         "material",
-        Other("tables [material.NAME.MODEL]; see `jstsph list materials`"),
+        Other(
+            "tables [material.NAME.MODEL]; see `jstsph list materials`",
+            Form::Materials,
+        ),
         Optional,
         "materials of this case; shipped ones need no table",
     ),
@@ -127,9 +147,40 @@ pub enum Kind {
     /// A list of tables.
     Tables(&'static [Key]),
     /// A table with these keys, or what the words say.
-    TableOr(&'static [Key], &'static str),
+    TableOr(&'static [Key], &'static str, &'static Kind),
     /// Something else, described in words.
-    Other(&'static str),
+    Other(&'static str, Form),
+}
+
+/// How values are written that are no single number, text or table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// Tables `[material.NAME.MODEL]`.
+    Materials,
+    /// Numbers with or without units, by name.
+    Parameters,
+    /// Paths.
+    Paths,
+    /// A selection of particles.
+    Selection,
+    /// A list of selections.
+    Selections,
+    /// A list of two or more shapes.
+    Shapes,
+    /// A list of pairs of lengths.
+    Points,
+    /// A list of lengths, zero or positive.
+    Radii,
+    /// Two lengths.
+    Interval,
+    /// One count per axis.
+    Counts,
+    /// Three numbers.
+    Direction,
+    /// A list of pairs of a time and a value.
+    TimeTable,
+    /// An axis or a list of axes.
+    Axes,
 }
 
 /// Which numbers are allowed; only finite ones ever are.
@@ -210,8 +261,8 @@ impl Kind {
             }
             Self::Table(_) => "a table".to_owned(),
             Self::Tables(_) => "a list of tables".to_owned(),
-            Self::TableOr(_, words) => format!("a table, or {words}"),
-            Self::Other(words) => (*words).to_owned(),
+            Self::TableOr(_, words, _) => format!("a table, or {words}"),
+            Self::Other(words, _) => (*words).to_owned(),
         }
     }
 
@@ -231,11 +282,13 @@ impl Kind {
     }
 
     /// Keys of the tables below this key.
-    pub(crate) fn keys(&self) -> &'static [Key] {
+    #[must_use]
+    pub fn keys(&self) -> &'static [Key] {
         match self {
-            Self::OneOf(keys) | Self::Table(keys) | Self::Tables(keys) | Self::TableOr(keys, _) => {
-                keys
-            }
+            Self::OneOf(keys)
+            | Self::Table(keys)
+            | Self::Tables(keys)
+            | Self::TableOr(keys, _, _) => keys,
             _ => &[],
         }
     }
@@ -257,6 +310,7 @@ const AXIS: Kind = Choice(|| vec!["x", "y", "z"]);
 const FIELD: Kind = Choice(|| names(FIELDS));
 const WHERE: Kind = Other(
     "a selection: \"body\", \"body.face\" or a table { body, face | boundary | half_space | box | and | or | not }",
+    Form::Selection,
 );
 
 /// First entries of a list of pairs.

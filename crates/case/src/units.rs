@@ -63,13 +63,48 @@ impl Measure {
         }
     }
 
-    fn times(self, other: Self, power: i8) -> Self {
-        Self {
-            length: self.length + power * other.length,
-            mass: self.mass + power * other.mass,
-            time: self.time + power * other.time,
-            temperature: self.temperature + power * other.temperature,
+    /// One word for it, for names of definitions: `length`, `heat_flux`, or the unit spelt out.
+    pub(crate) fn word(self) -> String {
+        let name = match NAMED.iter().find(|named| named.0 == self) {
+            _ if self == Self::NUMBER => "number".to_owned(),
+            Some((_, name, _)) => name
+                .split_once(' ')
+                .map_or(*name, |(_, noun)| noun)
+                .to_owned(),
+            None => format!("quantity in {self}"),
+        };
+        name.replace('/', " per ")
+            .replace('^', "")
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join("_")
+    }
+
+    /// Exponents of metre, kilogram, second and kelvin.
+    fn exponents(self) -> [i8; 4] {
+        [self.length, self.mass, self.time, self.temperature]
+    }
+
+    fn from_exponents([length, mass, time, temperature]: [i8; 4]) -> Self {
+        Self::thermal(length, mass, time, temperature)
+    }
+
+    /// Product with a power of another; `None` for exponents beyond anything physical.
+    pub(crate) fn combine(self, other: Self, power: i8) -> Option<Self> {
+        let mut exponents = self.exponents();
+        for (exponent, of) in exponents.iter_mut().zip(other.exponents()) {
+            *exponent = exponent.checked_add(of.checked_mul(power)?)?;
         }
+        Some(Self::from_exponents(exponents))
+    }
+
+    /// The root, when every exponent is a multiple.
+    pub(crate) fn root(self, degree: i8) -> Option<Self> {
+        let exponents = self.exponents();
+        exponents
+            .iter()
+            .all(|exponent| exponent % degree == 0)
+            .then(|| Self::from_exponents(exponents.map(|exponent| exponent / degree)))
     }
 }
 
@@ -175,10 +210,10 @@ pub const UNITS: &[Unit] = &[
 ];
 
 /// The one unit with an offset, by its spellings.
-const CELSIUS: [&str; 2] = ["degC", "°C"];
+pub(crate) const CELSIUS: [&str; 2] = ["degC", "°C"];
 
 /// 0 °C in K.
-const ZERO_CELSIUS: f64 = 273.15;
+pub(crate) const ZERO_CELSIUS: f64 = 273.15;
 
 /// Decimal prefixes and their factors.
 pub const PREFIXES: &[(&str, f64)] = &[
@@ -308,7 +343,9 @@ pub(crate) fn parse_unit(text: &str) -> Result<(f64, Measure), String> {
             let (name, power) = split_power(symbol).ok_or_else(|| symbol.to_owned())?;
             let (value, of) = find_unit(name).ok_or_else(|| name.to_owned())?;
             factor *= f64::powi(value, i32::from(sign * power));
-            measure = measure.times(of, sign * power);
+            measure = measure
+                .combine(of, sign * power)
+                .ok_or_else(|| symbol.to_owned())?;
             // `J/kg K` is read left to right: only the first symbol after a stroke is divided by.
             sign = 1;
         }

@@ -3,7 +3,7 @@
 use jstsph_geometry::Dimension;
 use jstsph_tensor::Vec3;
 
-use crate::document::{Node, Value};
+use crate::document::{Calculated, Node, Value};
 use crate::error::Problem;
 use crate::schema::Limit;
 use crate::suggestion::nearest;
@@ -32,6 +32,7 @@ pub(crate) fn number(
         Value::Integer(value) => *value as f64,
         Value::Float(value) => *value,
         Value::Text(text) => with_unit(node, path, text, measure)?,
+        Value::Calculated(number) => calculated(node, path, number, measure)?,
         other => {
             return Err(Problem::new(
                 &node.origin,
@@ -51,6 +52,34 @@ pub(crate) fn number(
         )),
         None => Ok(value),
     }
+}
+
+fn calculated(
+    node: &Node,
+    path: &str,
+    number: &Calculated,
+    measure: Measure,
+) -> Result<f64, Problem> {
+    if number.measure == measure {
+        return Ok(number.value);
+    }
+    let problem = Problem::new(
+        &node.origin,
+        format!(
+            "`{path}` must be {}, but \"{}\" is {}",
+            measure.description(),
+            number.text,
+            number.measure.description()
+        ),
+    );
+    Err(if number.measure == Measure::NUMBER {
+        problem.help(
+            "in expressions and [parameters] a number without unit has no dimension: \
+             write \"8 mm\", not 0.008",
+        )
+    } else {
+        problem
+    })
 }
 
 fn si(measure: Measure) -> String {
@@ -111,8 +140,24 @@ fn nearest_unit(symbol: &str, measure: Measure) -> Option<String> {
 
 /// Non-negative integer of a node.
 pub(crate) fn count(node: &Node, path: &str, least: usize) -> Result<usize, Problem> {
-    let Value::Integer(value) = node.value else {
-        return Err(wrong_type(node, path, "an integer"));
+    let value = match &node.value {
+        Value::Integer(value) => *value,
+        Value::Calculated(number) => {
+            let value = calculated(node, path, number, Measure::NUMBER)?;
+            #[expect(clippy::cast_possible_truncation, reason = "whole and within 2^53")]
+            let whole = (value.fract() == 0.0 && value.abs() < 9e15).then_some(value as i64);
+            whole.ok_or_else(|| {
+                Problem::new(
+                    &node.origin,
+                    format!(
+                        "`{path}` must be an integer, but \"{}\" is {value}",
+                        number.text
+                    ),
+                )
+                .help("round with floor() or ceil()")
+            })?
+        }
+        _ => return Err(wrong_type(node, path, "an integer")),
     };
     usize::try_from(value)
         .ok()

@@ -34,11 +34,28 @@ pub(crate) enum Command {
     List {
         /// Which list; without it, the lists there are
         what: Option<String>,
+        /// Print all lists as the page `docs/guide/keys.md`
+        #[arg(long, hide = true, conflicts_with = "what")]
+        markdown: bool,
     },
     /// Print a shipped case as a commented template
     New {
         /// Which case; without it, the cases there are
         name: Option<String>,
+    },
+    /// Run a case for every combination of values of some keys, and compare
+    Sweep(SweepOptions),
+    /// Print the JSON Schema of case files, with which editors complete and check them
+    Schema,
+    /// Print completions for a shell
+    Completions {
+        /// Which shell
+        shell: clap_complete::Shell,
+    },
+    /// Write manual pages
+    Man {
+        /// Folder for the pages of the program and its commands; without it, the program's page is printed
+        folder: Option<PathBuf>,
     },
 }
 
@@ -68,6 +85,28 @@ pub(crate) struct RunOptions {
     /// Continue an earlier run from its latest restart file
     #[arg(long)]
     pub(crate) resume: bool,
+}
+
+/// Options of `sweep`.
+#[derive(Debug, Args)]
+pub(crate) struct SweepOptions {
+    /// Case file
+    pub(crate) case: PathBuf,
+    /// Key and its values, separated by commas, or by semicolons where values contain commas: lattice.counts="[4,22];[6,36]"; may be repeated
+    #[arg(long = "vary", value_name = "KEY=VALUES", value_parser = key_value, required = true)]
+    pub(crate) vary: Vec<(String, String)>,
+    /// Override a key of the case in every run; may be repeated
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
+    pub(crate) overrides: Vec<(String, String)>,
+    /// Runs at the same time, each with one thread [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) jobs: Option<u16>,
+    /// Folder for table, plot and runs [default: results/sweep-NAME-OF-THE-CASE]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Probe to draw against the first key [default: the first probe of the case]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) probe: Option<String>,
 }
 
 /// Options of `check`.

@@ -12,6 +12,7 @@ use crate::error::CliError;
 use crate::plot;
 use crate::recorder::extra_columns;
 use crate::simulate;
+use crate::stability::Stability;
 use crate::verdict::{duration, seconds};
 
 /// Time spent on measuring the speed.
@@ -94,6 +95,7 @@ fn describe(case: &Case, mut simulation: Simulation, threads: usize) -> String {
             obstacle.obstacle.name, obstacle.obstacle.law
         );
     }
+    let stability = Stability::new(case, &simulation);
     let step = simulation.stable_time_step();
     let steps = (case.time.end / step).ceil();
     let (before, started) = (simulation.step_count(), Instant::now());
@@ -111,6 +113,9 @@ fn describe(case: &Case, mut simulation: Simulation, threads: usize) -> String {
         seconds(case.time.end),
         seconds(step)
     );
+    if let Some(stability) = &stability {
+        let _ = writeln!(text, "  time step          {}", stability.description(case));
+    }
     let _ = writeln!(
         text,
         "  estimate           {} or more with {threads} {} ({:.2e} s per step; compression shortens the steps)",
@@ -121,7 +126,8 @@ fn describe(case: &Case, mut simulation: Simulation, threads: usize) -> String {
     if let Some(memory) = resident_memory() {
         let _ = writeln!(text, "  memory             {:.0} MB", memory / 1e6);
     }
-    for warning in &case.warnings {
+    let slow = stability.and_then(|stability| stability.warning(case));
+    for warning in case.warnings.iter().chain(&slow) {
         let _ = writeln!(text, "  warning: {warning}");
     }
     text

@@ -115,6 +115,24 @@ pub(crate) enum CliError {
     /// The page of a study cannot be written.
     #[error(transparent)]
     Page(OutputError),
+    /// A file for other programs cannot be written.
+    #[error("cannot write {}: {source}", path.display())]
+    Unwritable {
+        /// File or folder.
+        path: PathBuf,
+        /// Cause.
+        source: std::io::Error,
+    },
+    /// What a sweep varies cannot be varied.
+    #[error("--vary {key}={values}: {reason}")]
+    Vary {
+        /// Dotted key.
+        key: String,
+        /// Its values as given.
+        values: String,
+        /// What is wrong.
+        reason: String,
+    },
     /// Threads cannot be started.
     #[error("cannot start {threads} threads: {reason}; give a smaller number with --threads")]
     Threads {

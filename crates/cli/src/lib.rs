@@ -29,7 +29,10 @@ mod recorder;
 mod report;
 mod reproduce;
 mod restart;
+mod shells;
 mod simulate;
+mod stability;
+mod sweep;
 mod templates;
 mod verdict;
 
@@ -85,7 +88,18 @@ where
         Command::Plot(options) => plot::run(&options, &mut console),
         Command::Report(options) => report::run(&options, &mut console),
         Command::Reproduce(options) => reproduce::run(&options, &words, &mut console, interrupted),
-        Command::List { what } => list::run(what.as_deref(), &mut console),
+        Command::List { markdown: true, .. } => {
+            console.print(jstsph_case::markdown());
+            Ok(0)
+        }
+        Command::List { what, .. } => list::run(what.as_deref(), &mut console),
+        Command::Sweep(options) => sweep::run(&options, &words, &mut console, interrupted),
+        Command::Schema => {
+            console.print(jstsph_case::json_schema());
+            Ok(0)
+        }
+        Command::Completions { shell } => shells::completions(shell, &mut console),
+        Command::Man { folder } => shells::manual(folder.as_deref(), &mut console),
         Command::New { name } => templates::run(name.as_deref(), &mut console),
     };
     match result {

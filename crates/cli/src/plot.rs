@@ -114,7 +114,7 @@ fn format(path: &Path) -> Result<Format, CliError> {
     }
 }
 
-fn save(figure: &Figure, path: &Path) -> Result<(), CliError> {
+pub(crate) fn save(figure: &Figure, path: &Path) -> Result<(), CliError> {
     let result = match format(path)? {
         Format::Png => figure.save_png(path),
         Format::Svg => figure.save_svg(path),

@@ -19,6 +19,7 @@ use crate::plot;
 use crate::progress::Progress;
 use crate::recorder::{Recorder, energies, extra_columns, extremes, probe_values};
 use crate::restart::{LastRow, decode};
+use crate::stability::{self, Stability};
 use crate::verdict;
 
 /// Evaluation points from which several threads pay.
@@ -55,9 +56,13 @@ pub(crate) fn run_case(
     pool.install(|| {
         let simulation =
             Simulation::new(case.model.clone()).map_err(|error| case.setup_error(&error))?;
+        let mut warnings = case.warnings.clone();
+        let stability = Stability::new(case, &simulation);
+        warnings.extend(stability.and_then(|found| found.warning(case)));
         let job = Job {
             options,
             case,
+            warnings,
             columns: &columns,
             threads,
             command,
@@ -101,6 +106,8 @@ fn default_threads(case: &Case) -> usize {
 struct Job<'a> {
     options: &'a RunOptions,
     case: &'a Case,
+    /// What looks wrong before the first step.
+    warnings: Vec<String>,
     columns: &'a [String],
     threads: usize,
     command: &'a [OsString],
@@ -270,7 +277,7 @@ impl Job<'_> {
                 "threads"
             }
         );
-        for warning in &self.case.warnings {
+        for warning in &self.warnings {
             text += &format!("\nwarning: {warning}");
         }
         folder.log(&text).map_err(CliError::Folder)?;
@@ -360,9 +367,13 @@ impl Job<'_> {
         summary.probes = probe_values(self.case, simulation, &fields)
             .into_iter()
             .collect();
-        summary.warnings = self.case.warnings.clone();
+        summary.warnings = self.warnings.clone();
         let found = verdict::warnings(&summary, simulation.position_corrections());
         summary.warnings.extend(found);
+        let scale = self.case.model.scheme.inertia_scale;
+        summary
+            .warnings
+            .extend(stability::inertia(&summary.energies, scale));
         summary
     }
 }

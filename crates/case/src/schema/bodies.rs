@@ -4,7 +4,7 @@ use super::Kind::{
     Choice, Count, Flag, Number, OneOf, Other, Signal, Signals, Table, TableOr, Text, Vector,
 };
 use super::Presence::{Default, Derived, Optional, Required};
-use super::{AXIS, Key, LENGTH, Limit, PLACE, key};
+use super::{AXIS, Form, Key, LENGTH, Limit, PLACE, key};
 use crate::units::Measure;
 
 /// `[[body]]`.
@@ -33,6 +33,7 @@ pub const BODY: &[Key] = &[
         TableOr(
             INITIAL_VELOCITY,
             "one velocity per axis: numbers or expressions of X, Y, Z",
+            &Signals(Measure::VELOCITY),
         ),
         Optional,
         "initial velocity; zero unless given",
@@ -109,7 +110,7 @@ pub const SHAPES: &[Key] = &[
     ),
 ];
 
-const COMBINATION: super::Kind = Other("a list of two or more shapes");
+const COMBINATION: super::Kind = Other("a list of two or more shapes", Form::Shapes);
 
 /// A sphere as a body.
 pub(crate) const SPHERE: &[Key] = &[
@@ -153,19 +154,22 @@ pub(crate) const STL: &[Key] = &[STL_FILE, STL_UNIT, STL_SCALE, STL_TRANSLATE];
 pub(crate) const POLYGON: &[Key] = &[
     key(
         "points",
-        Other("a list of [x, y] lengths"),
+        Other("a list of [x, y] lengths", Form::Points),
         Required,
         "corners in either direction; the last is joined to the first",
     ),
     key(
         "fillets",
-        Other("a list of radii, one per point, 0 for a sharp corner"),
+        Other(
+            "a list of radii, one per point, 0 for a sharp corner",
+            Form::Radii,
+        ),
         Derived("all sharp"),
         "radii of the arcs that round the corners, cut into pieces of 5 degrees",
     ),
     key(
         "extrude",
-        Other("[lowest z, highest z]"),
+        Other("[lowest z, highest z]", Form::Interval),
         Derived("none in plane strain, required in 3d"),
         "extent along z",
     ),
@@ -206,7 +210,7 @@ pub const LATTICE: &[Key] = &[
     ),
     key(
         "counts",
-        Other("nodes along each axis, e.g. [21, 11]"),
+        Other("nodes along each axis, e.g. [21, 11]", Form::Counts),
         Optional,
         "cubic lattice with these nodes along the edges of the bounding box; not for discs and cylinders",
     ),
@@ -236,6 +240,9 @@ pub const LATTICE: &[Key] = &[
     ),
 ];
 
+/// What says how finely a shape is filled: exactly one of these.
+pub(crate) const FILLINGS: &[&str] = &["spacing", "counts", "per_radius", "rings"];
+
 /// Initial velocity as a table.
 pub(crate) const INITIAL_VELOCITY: &[Key] =
     &[key("rotation", Table(ROTATION), Required, "rigid rotation")];
@@ -250,7 +257,10 @@ pub(crate) const ROTATION: &[Key] = &[
     ),
     key(
         "axis",
-        Other("direction as three numbers; z in plane strain"),
+        Other(
+            "direction as three numbers; z in plane strain",
+            Form::Direction,
+        ),
         Derived("z in plane strain, required in 3d"),
         "axis of rotation, any length",
     ),
@@ -261,7 +271,7 @@ pub(crate) const ROTATION: &[Key] = &[
 pub(crate) const SIGNAL: &[Key] = &[
     key(
         "table",
-        Other("[[time, value], ...] with ascending times"),
+        Other("[[time, value], ...] with ascending times", Form::TimeTable),
         Optional,
         "piecewise linear in time, constant before and after",
     ),
@@ -303,17 +313,22 @@ pub const SELECTION: &[Key] = &[
     key("box", Table(BOX), Optional, "particles in a box"),
     key(
         "and",
-        Other("a list of selections"),
+        Other("a list of selections", Form::Selections),
         Optional,
         "particles in all of them",
     ),
     key(
         "or",
-        Other("a list of selections"),
+        Other("a list of selections", Form::Selections),
         Optional,
         "particles in any of them",
     ),
-    key("not", Other("a selection"), Optional, "particles not in it"),
+    key(
+        "not",
+        Other("a selection", Form::Selection),
+        Optional,
+        "particles not in it",
+    ),
 ];
 
 /// A half-space.

@@ -8,7 +8,7 @@ use super::Kind::{
 };
 use super::Presence::{Default, Derived, Optional, Required};
 use super::bodies::{STL_FILE, STL_SCALE, STL_TRANSLATE, STL_UNIT};
-use super::{AXIS, FIELD, Key, LENGTH, Limit, PLACE, WHERE, key, names};
+use super::{AXIS, FIELD, Form, Key, LENGTH, Limit, PLACE, WHERE, key, names};
 use crate::units::Measure;
 
 /// `[[boundary]]`.
@@ -28,7 +28,10 @@ pub const BOUNDARY: &[Key] = &[
     ),
     key(
         "roller",
-        Other("an axis or a list of axes, \"x\" or [\"x\", \"y\"]"),
+        Other(
+            "an axis or a list of axes, \"x\" or [\"x\", \"y\"]",
+            Form::Axes,
+        ),
         Optional,
         "velocity zero along these axes",
     ),
@@ -62,6 +65,17 @@ pub const BOUNDARY: &[Key] = &[
         Optional,
         "heat exchange with surroundings through a face; needs [heat]",
     ),
+];
+
+/// What a boundary prescribes: exactly one of these.
+pub const CONDITIONS: &[&str] = &[
+    "fixed",
+    "roller",
+    "velocity",
+    "traction",
+    "temperature",
+    "heat_flux",
+    "convection",
 ];
 
 /// Heat exchange with surroundings.
@@ -113,7 +127,7 @@ pub const OBSTACLE: &[Key] = &[
     ),
     key(
         "profile",
-        TableOr(PROFILE, "the table of a single chain"),
+        TableOr(PROFILE, "the table of a single chain", &Table(CHAIN)),
         Optional,
         "plane strain: chains of segments and arcs",
     ),
@@ -175,7 +189,7 @@ pub const OBSTACLE: &[Key] = &[
     ),
 ];
 
-/// The forms of an obstacle.
+/// The forms of an obstacle: exactly one of these.
 pub const OBSTACLE_FORMS: &[&str] = &["profile", "plane", "sphere", "cylinder", "box", "stl"];
 
 /// Chains of a profile.
@@ -185,13 +199,16 @@ pub(crate) const PROFILE: &[Key] = &[key("chains", Tables(CHAIN), Required, "cha
 pub const CHAIN: &[Key] = &[
     key(
         "points",
-        Other("a list of [x, y] lengths"),
+        Other("a list of [x, y] lengths", Form::Points),
         Required,
         "corners; an open chain goes on straight beyond its ends",
     ),
     key(
         "fillets",
-        Other("a list of radii, one per point, 0 for a sharp corner"),
+        Other(
+            "a list of radii, one per point, 0 for a sharp corner",
+            Form::Radii,
+        ),
         Derived("all sharp"),
         "radii of the arcs that round the corners",
     ),
@@ -349,6 +366,16 @@ pub(crate) const LINE: &[Key] = &[
     key("to", PLACE, Required, "last point"),
     key("count", Count(2), Required, "number of points"),
     key("field", FIELD, Required, "field"),
+];
+
+/// What a probe reads: exactly one of these.
+pub const PROBE_QUANTITIES: &[&str] = &[
+    "extent",
+    "radius",
+    "edge_radius",
+    "statistic",
+    "point",
+    "line",
 ];
 
 /// Fields a probe can read, by name.

@@ -210,7 +210,7 @@ pub(crate) const JST: &[Key] = &[
     ),
     key(
         "biharmonic",
-        TableOr(BIHARMONIC, "a number, zero or positive"),
+        TableOr(BIHARMONIC, "a number, zero or positive", &COEFFICIENT),
         Default("0.0009765625"),
         "coefficient of the double Laplacian, 1/1024 unless given; as a table it falls with the plastic strain (4.2)",
     ),
