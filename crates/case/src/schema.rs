@@ -181,6 +181,8 @@ pub enum Form {
     TimeTable,
     /// An axis or a list of axes.
     Axes,
+    /// A list of names of [`FRAME_FIELDS`].
+    Fields,
 }
 
 /// Which numbers are allowed; only finite ones ever are.

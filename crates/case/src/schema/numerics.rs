@@ -5,7 +5,7 @@ use jstsph_sph::Kernel;
 
 use super::Kind::{Choice, Count, Flag, Number, Other, Table, TableOr};
 use super::Presence::{Default, Derived, Optional, Required};
-use super::{COEFFICIENT, Key, Limit, key, names};
+use super::{COEFFICIENT, Form, Key, Limit, key, names};
 use crate::case::{FrameCells, Precision};
 use crate::units::Measure;
 
@@ -296,7 +296,7 @@ pub const OUTPUT: &[Key] = &[
     ),
     key(
         "fields",
-        Other("a list of names of fields"),
+        Other("a list of names of fields", Form::Fields),
         Optional,
         "fields in frames; all of them unless some are chosen",
     ),
