@@ -52,22 +52,32 @@ pub struct TimeSettings {
     pub cfl: f64,
 }
 
-/// What is written how often. Intervals are simulated time in s; something is written at the first
-/// step at or past each multiple.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What is written how often.
+#[derive(Clone, Debug, PartialEq)]
 pub struct OutputSettings {
     /// Between rows of history.csv.
-    pub history_interval: f64,
+    pub history_interval: Interval,
     /// Between frames.
-    pub frame_interval: f64,
+    pub frame_interval: Interval,
     /// Between restart files.
-    pub restart_interval: f64,
+    pub restart_interval: Interval,
+    /// Names of the fields in frames, of [`FRAME_FIELDS`](crate::schema::FRAME_FIELDS).
+    pub fields: Vec<&'static str>,
     /// Numbers in frames.
     pub precision: Precision,
     /// Whether frames are compressed.
     pub compression: bool,
     /// What frames show in ParaView.
     pub cells: FrameCells,
+}
+
+/// When something is written again.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Interval {
+    /// At the first step at or past each multiple of this simulated time, s.
+    Time(f64),
+    /// At each multiple of this number of steps, at least 1.
+    Steps(u64),
 }
 
 /// What frames show in ParaView.
@@ -291,6 +301,12 @@ impl Case {
             .iter()
             .map(|body| body.body.positions.len())
             .sum()
+    }
+
+    /// The case as its author wrote it, comments included; without the overrides.
+    #[must_use]
+    pub fn original(&self) -> &str {
+        &self.source.text
     }
 
     /// A set-up error of the solver as a mistake in the case file, at the place of the body it

@@ -180,6 +180,7 @@ impl Writer {
                 json!({ "type": "array", "items": { "type": ["number", "string"] }, "minItems": 2, "maxItems": 2 }),
                 1,
             ),
+            Form::Fields => list(json!({ "enum": crate::schema::FRAME_FIELDS }), 0),
             Form::Axes => any_of([
                 json!({ "enum": ["x", "y", "z"] }),
                 list(json!({ "enum": ["x", "y", "z"] }), 1),

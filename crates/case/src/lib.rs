@@ -67,7 +67,7 @@ pub mod expression;
 pub mod schema;
 pub mod units;
 
-pub use case::{Case, FrameCells, OutputSettings, Precision, TimeSettings, load, parse};
+pub use case::{Case, FrameCells, Interval, OutputSettings, Precision, TimeSettings, load, parse};
 pub use error::{CaseError, InputError, Place};
 pub use json_schema::json_schema;
 pub use list::{List, ListEntry, lists};

@@ -22,7 +22,7 @@ pub(crate) use numerics::{
     BIHARMONIC, CELLS, FORMULATIONS, INTEGRATORS, JST, LAPLACIANS, PRECISIONS, QUADRATURES,
     SMOOTHING_REFERENCES, VISCOSITY, WEIGHTS,
 };
-pub use numerics::{HEAT, OUTPUT, SCHEME, STABILISATION, TIME};
+pub use numerics::{FRAME_FIELDS, HEAT, OUTPUT, SCHEME, STABILISATION, TIME};
 
 /// A whole case file.
 pub const CASE: &[Key] = &[
@@ -181,6 +181,8 @@ pub enum Form {
     TimeTable,
     /// An axis or a list of axes.
     Axes,
+    /// A list of names of [`FRAME_FIELDS`].
+    Fields,
 }
 
 /// Which numbers are allowed; only finite ones ever are.

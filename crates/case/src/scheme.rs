@@ -6,9 +6,9 @@ use jstsph_solver::{
 };
 use jstsph_sph::Kernel;
 
-use crate::case::{OutputSettings, TimeSettings};
+use crate::case::{Interval, OutputSettings, TimeSettings};
 use crate::document::{Node, Value};
-use crate::error::Problem;
+use crate::error::{Origin, Problem};
 use crate::schema::{self, Limit};
 use crate::section::{Field, Section};
 use crate::units::Measure;
@@ -183,14 +183,82 @@ fn read_jst(field: &Field<'_>) -> Result<(Jst, toml::Table), Problem> {
 pub(crate) fn read_output(node: &Node, end: f64) -> Result<(OutputSettings, toml::Table), Problem> {
     let mut section = Section::open(node, "output", schema::OUTPUT)?;
     let settings = OutputSettings {
-        history_interval: section.number_or("history_interval", end / 500.0)?,
-        frame_interval: section.number_or("frame_interval", end / 50.0)?,
-        restart_interval: section.number_or("restart_interval", end / 10.0)?,
+        history_interval: read_interval(&mut section, "history", end / 500.0)?,
+        frame_interval: read_interval(&mut section, "frame", end / 50.0)?,
+        restart_interval: read_interval(&mut section, "restart", end / 10.0)?,
+        fields: read_fields(&mut section)?,
         precision: section.choice("precision", schema::PRECISIONS)?,
         compression: section.flag("compression")?,
         cells: section.choice("cells", schema::CELLS)?,
     };
     Ok((settings, section.finish()))
+}
+
+/// `WHAT_interval` or `WHAT_steps`; one on the command line replaces the other in the file.
+fn read_interval(
+    section: &mut Section<'_>,
+    what: &str,
+    otherwise: f64,
+) -> Result<Interval, Problem> {
+    let (time, steps) = (format!("{what}_interval"), format!("{what}_steps"));
+    let is_override = |node: &Node| matches!(node.origin, Origin::Override(_));
+    let by_steps = match (section.node(&time), section.node(&steps)) {
+        (Some(time_node), Some(steps_node))
+            if is_override(time_node) == is_override(steps_node) =>
+        {
+            return Err(section
+                .problem(&steps, format!("`output` has both {time} and {steps}"))
+                .help("give one of them: a simulated time, or a number of steps"));
+        }
+        (Some(_), Some(node)) => is_override(node),
+        (_, node) => node.is_some(),
+    };
+    match by_steps
+        .then(|| section.count(&steps))
+        .transpose()?
+        .flatten()
+    {
+        Some(count) => Ok(Interval::Steps(count as u64)),
+        None => section.number_or(&time, otherwise).map(Interval::Time),
+    }
+}
+
+/// The fields of frames in the order of the schema; all unless some are chosen.
+fn read_fields(section: &mut Section<'_>) -> Result<Vec<&'static str>, Problem> {
+    let Some(field) = section.field("fields")? else {
+        return Ok(schema::FRAME_FIELDS.to_vec());
+    };
+    let Value::Array(items) = &field.node.value else {
+        return Err(field.problem(format!(
+            "`{}` must be a list of names, but is {}",
+            field.path,
+            field.node.value.kind()
+        )));
+    };
+    let mut chosen = Vec::new();
+    for item in items {
+        let text = match &item.value {
+            Value::Text(text) => text.as_str(),
+            other => other.kind(),
+        };
+        match schema::FRAME_FIELDS.iter().find(|name| **name == text) {
+            Some(name) => chosen.push(*name),
+            None => {
+                return Err(
+                    Problem::new(&item.origin, format!("frames have no field `{text}`"))
+                        .allowed(text, schema::FRAME_FIELDS.iter().copied()),
+                );
+            }
+        }
+    }
+    let fields: Vec<&'static str> = schema::FRAME_FIELDS
+        .iter()
+        .copied()
+        .filter(|name| chosen.contains(name))
+        .collect();
+    let names = fields.iter().map(|name| toml::Value::from(*name));
+    section.record("fields", names.collect::<Vec<_>>());
+    Ok(fields)
 }
 
 /// Reads `dimension`.

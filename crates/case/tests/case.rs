@@ -1,6 +1,7 @@
 //! What a case file becomes: models, resolved files, overrides, warnings.
 
-use jstsph_case::{Case, CaseError, parse};
+use jstsph_case::schema::FRAME_FIELDS;
+use jstsph_case::{Case, CaseError, Interval, parse};
 use jstsph_contact::Law;
 use jstsph_solver::{Biharmonic, ConditionKind, ProbeKind, Quadrature, Signal, SmoothingReference};
 use jstsph_tensor::Vec3;
@@ -180,7 +181,8 @@ fn every_table_reaches_the_model() {
         (400, 81),
         "particles count through all bodies"
     );
-    assert_eq!(case.output.frame_interval, 45e-3 / 50.0);
+    assert_eq!(case.output.frame_interval, Interval::Time(45e-3 / 50.0));
+    assert_eq!(case.output.fields, FRAME_FIELDS);
     assert!(case.output.compression);
 }
 
@@ -194,9 +196,45 @@ fn resolved_case_reads_to_the_same_case() {
     assert_eq!(format!("{:?}", again.model), format!("{:?}", case.model));
     assert_eq!(format!("{:?}", again.probes), format!("{:?}", case.probes));
     assert_eq!(
-        (again.time, again.output, again.title),
-        (case.time, case.output, case.title)
+        (again.time, &again.output, &again.title),
+        (case.time, &case.output, &case.title)
     );
+}
+
+#[test]
+fn output_is_by_time_or_steps_with_chosen_fields() {
+    let case = full(&[
+        ("output.frame_steps", "20"),
+        ("output.fields", "[\"velocity\", \"jacobian\"]"),
+    ])
+    .expect("valid");
+    assert_eq!(case.output.frame_interval, Interval::Steps(20));
+    assert_eq!(case.output.history_interval, Interval::Time(45e-3 / 500.0));
+    assert_eq!(case.output.fields, ["velocity", "jacobian"]);
+    let again = parse("full", "case.toml", &case.resolved, &[]).expect("valid");
+    assert_eq!(again.output, case.output);
+    assert_eq!(again.original(), case.resolved);
+    for (overrides, message) in [
+        (
+            vec![
+                ("output.frame_steps", "20"),
+                ("output.frame_interval", "1 ms"),
+            ],
+            "`output` has both frame_interval and frame_steps",
+        ),
+        (vec![("output.restart_steps", "0")], "restart_steps"),
+        (
+            vec![("output.fields", "[\"velocty\"]")],
+            "did you mean `velocity`?",
+        ),
+        (
+            vec![("output.fields", "velocity")],
+            "must be a list of names",
+        ),
+    ] {
+        let error = full(&overrides).expect_err("refused").to_string();
+        assert!(error.contains(message), "{error}");
+    }
 }
 
 #[test]

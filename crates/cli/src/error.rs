@@ -1,6 +1,6 @@
 //! Why the program ends early, and with which exit code.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use jstsph_case::CaseError;
 use jstsph_output::OutputError;
@@ -142,12 +142,14 @@ pub(crate) enum CliError {
         reason: String,
     },
     /// Results can no longer be written.
-    #[error("the run stopped at t = {time:.6e} s: {source}")]
+    #[error("the run stopped at t = {time:.6e} s: {source}\n = {}", way_on(restart.as_deref()))]
     Writing {
         /// Simulated time, s.
         time: f64,
         /// Cause.
         source: OutputError,
+        /// The latest restart file that can be used.
+        restart: Option<PathBuf>,
     },
     /// The simulation broke down; the last good state was written.
     #[error("the run failed: {reason}\n = the last good state, t = {time:.6e} s, step {step}, is in {}", path.display())]
@@ -170,6 +172,17 @@ impl CliError {
             Self::Writing { .. } | Self::Failed { .. } | Self::Page(_) => 1,
             _ => 2,
         }
+    }
+}
+
+/// What to do when results could not be written.
+fn way_on(restart: Option<&Path>) -> String {
+    match restart {
+        Some(path) => format!(
+            "the last good state is {}; when there is room to write, continue with --resume",
+            path.display()
+        ),
+        None => "no state was saved; when there is room to write, start again".to_owned(),
     }
 }
 

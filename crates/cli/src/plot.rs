@@ -60,7 +60,13 @@ pub(crate) fn run(options: &PlotOptions, console: &mut Console<'_>) -> Result<u8
 pub(crate) fn after_run(case: &Case, results: &Path) -> Result<Vec<PathBuf>, CliError> {
     let mut written = Vec::new();
     let chosen = frames::choose(results, &[])?;
-    let body = body::figure(case, &chosen, FIELD, &Look::default())?;
+    // The frames may have been told to leave it out.
+    let names = chosen[0].frame.value_names();
+    let field = match names.iter().find(|name| *name == FIELD) {
+        Some(name) => name.as_str(),
+        None => names.first().map_or(FIELD, String::as_str),
+    };
+    let body = body::figure(case, &chosen, field, &Look::default())?;
     let table = read_table(&results.join("history.csv")).map_err(CliError::Picture)?;
     let (energies, _) = history::figure(case, &table, "energies")?;
     for (figure, name) in [(body, "final.png"), (energies, "energies.png")] {

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use jstsph_case::{Case, FrameCells, Precision};
+use jstsph_case::{Case, FrameCells, Interval, Precision};
 use jstsph_geometry::{Cells, Dimension};
 use jstsph_output::{
     CellKind, Energies, Extremes, Frame, FrameOptions, FrameSeries, HISTORY_COLUMNS, HistoryRow,
@@ -26,11 +26,40 @@ pub(crate) struct Recorder<'a> {
     good: Saved,
 }
 
-/// Simulated times at which something is due, s.
+/// When what is due next.
 struct Next {
-    history: f64,
-    frame: f64,
-    restart: f64,
+    history: Due,
+    frame: Due,
+    restart: Due,
+}
+
+/// When one thing is due next.
+struct Due {
+    interval: Interval,
+    /// Simulated time, s; of no meaning for an interval in steps.
+    next: f64,
+}
+
+impl Due {
+    fn after(time: f64, interval: Interval) -> Self {
+        let next = match interval {
+            Interval::Time(interval) => next_multiple(time, interval),
+            Interval::Steps(_) => f64::INFINITY,
+        };
+        Self { interval, next }
+    }
+
+    /// Whether it is due; from then on the next one is.
+    fn is_due(&mut self, simulation: &Simulation) -> bool {
+        match self.interval {
+            Interval::Time(_) if simulation.time() < self.next => false,
+            Interval::Time(_) => {
+                *self = Self::after(simulation.time(), self.interval);
+                true
+            }
+            Interval::Steps(steps) => simulation.step_count().is_multiple_of(steps),
+        }
+    }
 }
 
 /// Cells of all bodies with indices into the whole simulation.
@@ -121,17 +150,27 @@ impl<'a> Recorder<'a> {
                 CellKind::Lattice
             },
         };
-        let (history, frames) = match resumed {
-            None => (
+        let good = simulation.save();
+        let last = resumed.unwrap_or_else(|| LastRow {
+            time,
+            impulses: impulses(simulation),
+        });
+        let is_new = simulation.step_count() == 0;
+        let (history, frames) = if is_new {
+            // Also when it is resumed: it may have been killed before its first row or frame. The
+            // state comes first, so that where there is a history there is a state.
+            let data = encode(&good, &case.resolved, &last);
+            write_restart(&folder.restart(), 0, &data)?;
+            (
                 HistoryWriter::create(&folder.history(), columns)?,
-                FrameSeries::create(&folder.frames(), options),
-            ),
-            Some(_) => (
+                FrameSeries::resume(&folder.frames(), options, f64::NEG_INFINITY)?,
+            )
+        } else {
+            (
                 HistoryWriter::resume(&folder.history(), columns, time)?,
                 FrameSeries::resume(&folder.frames(), options, time)?,
-            ),
+            )
         };
-        let fresh = resumed.is_none();
         let mut recorder = Self {
             case,
             folder,
@@ -139,17 +178,14 @@ impl<'a> Recorder<'a> {
             frames,
             cells,
             next: Next {
-                history: next_multiple(time, case.output.history_interval),
-                frame: next_multiple(time, case.output.frame_interval),
-                restart: next_multiple(time, case.output.restart_interval),
+                history: Due::after(time, case.output.history_interval),
+                frame: Due::after(time, case.output.frame_interval),
+                restart: Due::after(time, case.output.restart_interval),
             },
-            last: resumed.unwrap_or_else(|| LastRow {
-                time,
-                impulses: impulses(simulation),
-            }),
-            good: simulation.save(),
+            last,
+            good,
         };
-        if fresh {
+        if is_new {
             let fields = simulation.particle_fields();
             recorder.row(simulation, &fields)?;
             recorder.frame(simulation, &fields)?;
@@ -159,23 +195,21 @@ impl<'a> Recorder<'a> {
 
     /// Writes what is due after a step.
     pub(crate) fn observe(&mut self, simulation: &Simulation) -> Result<(), OutputError> {
-        let time = simulation.time();
-        let (row, frame) = (time >= self.next.history, time >= self.next.frame);
+        let row = self.next.history.is_due(simulation);
+        let frame = self.next.frame.is_due(simulation);
         if row || frame {
             let fields = simulation.particle_fields();
             if row {
                 self.row(simulation, &fields)?;
                 self.good = simulation.save();
-                self.next.history = next_multiple(time, self.case.output.history_interval);
             }
             if frame {
                 self.frame(simulation, &fields)?;
-                self.next.frame = next_multiple(time, self.case.output.frame_interval);
             }
         }
-        if time >= self.next.restart {
+        // Last: a restart file finds the rows and frames of its own time written.
+        if self.next.restart.is_due(simulation) {
             self.restart(&simulation.save())?;
-            self.next.restart = next_multiple(time, self.case.output.restart_interval);
         }
         Ok(())
     }
@@ -218,6 +252,8 @@ impl<'a> Recorder<'a> {
     }
 
     fn restart(&self, saved: &Saved) -> Result<PathBuf, OutputError> {
+        // Rows that a power failure takes must not be missing before a state that it leaves.
+        self.history.sync()?;
         write_restart(
             &self.folder.restart(),
             saved.step,
@@ -288,6 +324,10 @@ impl<'a> Recorder<'a> {
         if simulation.has_heat() {
             frame = frame.scalar("temperature", &fields.temperature[..]);
         }
+        let chosen = &self.case.output.fields;
+        frame.scalars.retain(|(name, _)| chosen.contains(&&**name));
+        frame.vectors.retain(|(name, _)| chosen.contains(&&**name));
+        frame.tensors.retain(|(name, _)| chosen.contains(&&**name));
         let bodies = &simulation.reference().bodies;
         if bodies.len() > 1 {
             let mut body = vec![0.0; state.position.len()];

@@ -3,11 +3,13 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 use jstsph_case::Case;
 use jstsph_geometry::inverted_cells;
 use jstsph_output::{
-    OutputError, ResultsFolder, RunRecord, Status, Summary, atomic_write, read_latest_restart,
+    OutputError, ResultsFolder, RunRecord, Status, Summary, atomic_write, latest_restart,
+    read_latest_restart,
 };
 use jstsph_solver::{Quadrature, Simulation};
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -141,28 +143,70 @@ impl Job<'_> {
                 .collect(),
             self.threads as u64,
         );
+        let start = Instant::now();
+        let result = self.recorded(
+            &folder,
+            &mut record,
+            &mut simulation,
+            resumed,
+            console,
+            interrupted,
+        );
+        if let Err(CliError::Writing { source, .. }) = &result {
+            // Where nothing can be written, perhaps this can; if not, the record says what a killed
+            // run's says.
+            let reason = format!("stopped: {source}");
+            let _ = folder.log(&reason);
+            record.finish(start.elapsed().as_secs_f64(), reason);
+            let _ = record.write(folder.path());
+        }
+        result
+    }
+
+    /// From the first file to the last.
+    fn recorded(
+        &self,
+        folder: &ResultsFolder,
+        record: &mut RunRecord,
+        simulation: &mut Simulation,
+        resumed: Option<LastRow>,
+        console: &mut Console<'_>,
+        interrupted: &AtomicBool,
+    ) -> Result<u8, CliError> {
+        let stopped = |time: f64| {
+            move |source| CliError::Writing {
+                time,
+                source,
+                restart: latest_restart(&folder.restart()),
+            }
+        };
+        let time = simulation.time();
         let mut recorder = self
-            .open(&folder, &record, &simulation, resumed)
-            .map_err(CliError::Folder)?;
-        self.announce(&simulation, &folder, console)?;
-        let mut progress = Progress::new(&simulation, self.case.time.end, self.options.quiet);
+            .open(folder, record, simulation, resumed)
+            .map_err(|source| match source {
+                OutputError::Io { .. } => stopped(time)(source),
+                // Tables and frames of another case.
+                _ => CliError::Folder(source),
+            })?;
+        self.announce(simulation, folder, console)
+            .map_err(stopped(time))?;
+        let mut progress = Progress::new(simulation, self.case.time.end, self.options.quiet);
         let first_step = simulation.step_count();
         let end = self.advance(
-            &mut simulation,
+            simulation,
             &mut recorder,
             &mut progress,
-            &folder,
+            folder,
             console,
             interrupted,
         );
         progress.clear();
         let wall = progress.elapsed().as_secs_f64();
         let time = simulation.time();
-        let writing = |source| CliError::Writing { time, source };
 
-        let (status, reason, outcome) = match end.map_err(writing)? {
+        let (status, reason, outcome) = match end.map_err(stopped(time))? {
             End::Completed => {
-                recorder.finish(&simulation).map_err(writing)?;
+                recorder.finish(simulation).map_err(stopped(time))?;
                 (Status::Completed, "completed".to_owned(), Ok(0))
             }
             End::Interrupted(file) => {
@@ -173,7 +217,7 @@ impl Job<'_> {
                 (Status::Interrupted, reason, Ok(130))
             }
             End::Failed(reason) => {
-                let path = recorder.fail(&mut simulation).map_err(writing)?;
+                let path = recorder.fail(simulation).map_err(stopped(time))?;
                 let failed = CliError::Failed {
                     reason: reason.clone(),
                     time: simulation.time(),
@@ -183,15 +227,15 @@ impl Job<'_> {
                 (Status::Failed, format!("failed: {reason}"), Err(failed))
             }
         };
-        let mut summary = self.summary(&simulation, status, wall, first_step);
+        let mut summary = self.summary(simulation, status, wall, first_step);
         if outcome.is_err() {
             summary.warnings.push(reason.clone());
         }
-        let pictures = self.draw(&folder, &mut summary);
-        summary.write(folder.path()).map_err(writing)?;
+        let pictures = self.draw(folder, &mut summary);
+        summary.write(folder.path()).map_err(stopped(time))?;
         record.finish(wall, reason.clone());
-        record.write(folder.path()).map_err(writing)?;
-        folder.log(&reason).map_err(writing)?;
+        record.write(folder.path()).map_err(stopped(time))?;
+        folder.log(&reason).map_err(stopped(time))?;
         if !self.options.quiet {
             console.print(verdict::verdict(
                 &summary,
@@ -221,10 +265,23 @@ impl Job<'_> {
             path: path.clone(),
             reason,
         };
-        let folder = ResultsFolder::open(&path).map_err(nothing)?;
-        let (data, damaged) = read_latest_restart(&folder.restart()).map_err(nothing)?;
+        let folder = ResultsFolder::open(&path).map_err(|source| match source {
+            OutputError::FolderInUse { .. } => CliError::Folder(source),
+            _ => nothing(source),
+        })?;
+        let (data, damaged) = match read_latest_restart(&folder.restart()) {
+            // Killed before its first row: nothing is lost by beginning.
+            Err(OutputError::NoRestart { problems, .. })
+                if problems.is_empty() && !folder.history().exists() =>
+            {
+                return Ok((folder, None));
+            }
+            other => other.map_err(nothing)?,
+        };
         for warning in damaged {
-            console.error(format_args!("warning: {warning}\n"));
+            let text = format!("warning: {warning}; the state before it is used");
+            folder.log(&text).map_err(CliError::Folder)?;
+            console.error(format_args!("{text}\n"));
         }
         let (saved, last, resolved) = decode(data)
             .ok_or_else(|| foreign("its restart file was written by another version".to_owned()))?;
@@ -253,6 +310,9 @@ impl Job<'_> {
         atomic_write(&folder.case(), |writer| {
             writer.write_all(self.case.resolved.as_bytes())
         })?;
+        atomic_write(&folder.original_case(), |writer| {
+            writer.write_all(self.case.original().as_bytes())
+        })?;
         Recorder::start(self.case, folder, self.columns, simulation, resumed)
     }
 
@@ -261,7 +321,7 @@ impl Job<'_> {
         simulation: &Simulation,
         folder: &ResultsFolder,
         console: &mut Console<'_>,
-    ) -> Result<(), CliError> {
+    ) -> Result<(), OutputError> {
         let reference = simulation.reference();
         let mut text = format!(
             "{}: {} particles, {} evaluation points, {} to {}, {} {}",
@@ -280,7 +340,7 @@ impl Job<'_> {
         for warning in &self.warnings {
             text += &format!("\nwarning: {warning}");
         }
-        folder.log(&text).map_err(CliError::Folder)?;
+        folder.log(&text)?;
         if !self.options.quiet {
             console.error(format_args!("{text}\n"));
         }

@@ -49,6 +49,7 @@ fn a_report_holds_the_numbers_of_the_run_in_one_file() {
         serde_json::from_str(&place.text("r/summary.json")).expect("JSON");
     assert_eq!(data["summary"], summary);
     assert_eq!(data["case_text"], place.text("r/case.toml"));
+    assert_eq!(data["original_case"], place.text("block.toml"));
     assert_eq!(data["log"], place.text("r/run.log"));
     assert_eq!(data["obstacles"][0]["name"], "wall");
     let frames = &data["frames"];

@@ -120,6 +120,22 @@ pub enum OutputError {
         path: PathBuf,
     },
 
+    /// Another run writes into the results folder.
+    #[error("results folder {} is in use by a run ({holder}); wait for its end, or give another folder with --out", path.display())]
+    FolderInUse {
+        /// The folder.
+        path: PathBuf,
+        /// The process and since when.
+        holder: String,
+    },
+
+    /// No run has written into the folder.
+    #[error("no run was ever begun in {}", path.display())]
+    NoRun {
+        /// The folder.
+        path: PathBuf,
+    },
+
     /// A file stands where a folder is needed.
     #[error("{} is not a folder; give another folder with --out", path.display())]
     NotAFolder {

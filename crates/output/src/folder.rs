@@ -7,6 +7,7 @@ use std::time::SystemTime;
 
 use crate::atomic::is_temporary;
 use crate::frames::is_frame_file;
+use crate::lock::{FolderLock, LOCK};
 use crate::plot::MARK;
 use crate::record::RECORD;
 use crate::restart::step_of;
@@ -14,15 +15,19 @@ use crate::summary::SUMMARY;
 use crate::{OutputError, iso8601};
 
 const CASE: &str = "case.toml";
+const ORIGINAL: &str = "case.original.toml";
 const HISTORY: &str = "history.csv";
 const LOG: &str = "run.log";
 const FRAMES: &str = "frames";
 const RESTART: &str = "restart";
 
 /// The results folder of one run; see the crate's README for the files in it.
-#[derive(Debug, Clone, PartialEq, Eq)]
+///
+/// As long as it lives no other process, and no other value in this one, can write there.
+#[derive(Debug)]
 pub struct ResultsFolder {
     path: PathBuf,
+    _lock: FolderLock,
 }
 
 impl ResultsFolder {
@@ -38,24 +43,29 @@ impl ResultsFolder {
     /// `run.log` shows that this is a results folder.
     ///
     /// # Errors
-    /// [`OutputError::FolderNotEmpty`], [`OutputError::NotAFolder`], [`OutputError::Io`] (for instance
-    /// without permission to write).
+    /// [`OutputError::FolderInUse`] while another run writes there, [`OutputError::FolderNotEmpty`],
+    /// [`OutputError::NotAFolder`], [`OutputError::Io`] (for instance without permission to write).
     pub fn create(path: &Path, force: bool) -> Result<Self, OutputError> {
-        let folder = Self {
-            path: path.to_path_buf(),
-        };
         if path.exists() && !path.is_dir() {
             return Err(OutputError::NotAFolder {
                 path: path.to_path_buf(),
             });
         }
         fs::create_dir_all(path).map_err(OutputError::io("create", path))?;
-        let is_empty = entries(path)?.is_empty();
-        if !is_empty && !force {
-            return Err(OutputError::FolderNotEmpty {
-                path: path.to_path_buf(),
-            });
+        // Before the lock file is made: a foreign folder that is refused stays as it is.
+        if !force && !is_empty(path)? {
+            FolderLock::probe(path)?;
+            return Err(not_empty(path));
         }
+        let lock = FolderLock::acquire(path)?;
+        // Another run may have come and gone between the look and the lock.
+        if !force && !is_empty(path)? {
+            return Err(not_empty(path));
+        }
+        let folder = Self {
+            path: path.to_path_buf(),
+            _lock: lock,
+        };
         folder.test_writing()?;
         folder.remove_results()?;
         folder.prepare()?;
@@ -66,15 +76,25 @@ impl ResultsFolder {
     /// killed run.
     ///
     /// # Errors
-    /// [`OutputError::NotAFolder`], [`OutputError::Io`].
+    /// [`OutputError::NotAFolder`]; [`OutputError::NoRun`] for a folder without any trace of a run;
+    /// [`OutputError::FolderInUse`] while another run writes there; [`OutputError::Io`].
     pub fn open(path: &Path) -> Result<Self, OutputError> {
         if path.exists() && !path.is_dir() {
             return Err(OutputError::NotAFolder {
                 path: path.to_path_buf(),
             });
         }
+        if ![LOCK, RECORD, SUMMARY, LOG]
+            .iter()
+            .any(|name| path.join(name).is_file())
+        {
+            return Err(OutputError::NoRun {
+                path: path.to_path_buf(),
+            });
+        }
         let folder = Self {
             path: path.to_path_buf(),
+            _lock: FolderLock::acquire(path)?,
         };
         folder.test_writing()?;
         folder.prepare()?;
@@ -104,9 +124,14 @@ impl ResultsFolder {
         self.path.join(HISTORY)
     }
 
-    /// The copy of the case that was run.
+    /// The case that was run with every default written out.
     pub fn case(&self) -> PathBuf {
         self.path.join(CASE)
+    }
+
+    /// The case that was run as its author wrote it.
+    pub fn original_case(&self) -> PathBuf {
+        self.path.join(ORIGINAL)
     }
 
     /// The report.
@@ -161,11 +186,22 @@ impl ResultsFolder {
         })?;
         // The marks of a results folder go last: an interrupted removal can be repeated.
         remove_matching(&self.path, |name, path| {
-            [HISTORY, CASE, Self::REPORT].contains(&name)
+            [HISTORY, CASE, ORIGINAL, Self::REPORT].contains(&name)
                 || is_temporary(name)
                 || is_picture(name, path)
         })?;
         remove_matching(&self.path, |name, _| [RECORD, SUMMARY, LOG].contains(&name))
+    }
+}
+
+/// Whether a folder has nothing in it but perhaps the lock file of a run that was refused or killed.
+fn is_empty(folder: &Path) -> Result<bool, OutputError> {
+    Ok(entries(folder)?.iter().all(|name| name == LOCK))
+}
+
+fn not_empty(path: &Path) -> OutputError {
+    OutputError::FolderNotEmpty {
+        path: path.to_path_buf(),
     }
 }
 
@@ -225,7 +261,12 @@ mod tests {
             .write(&Frame::new(0.0, 0, &[Vec3::zeros()]))
             .unwrap();
         write_restart(&folder.restart(), 3, &RestartData::default()).unwrap();
-        for file in [folder.history(), folder.case(), folder.report()] {
+        for file in [
+            folder.history(),
+            folder.case(),
+            folder.original_case(),
+            folder.report(),
+        ] {
             fs::write(file, "x").unwrap();
         }
         fs::write(
@@ -263,11 +304,15 @@ mod tests {
         for file in &foreign {
             fs::write(file, "mine").unwrap();
         }
+        drop(folder);
         let folder = ResultsFolder::create(&path, true).unwrap();
         assert!(foreign.iter().all(|file| file.exists()));
         let mut left = entries(&path).unwrap();
         left.sort();
-        assert_eq!(left, ["frames", "notes.txt", "photo.png", "restart"]);
+        assert_eq!(
+            left,
+            ["frames", "notes.txt", "photo.png", "restart", "run.lock"]
+        );
         assert_eq!(entries(&folder.frames()).unwrap(), ["view.pvsm"]);
         assert_eq!(entries(&folder.restart()).unwrap(), ["why.md"]);
     }
@@ -289,11 +334,41 @@ mod tests {
         let before = entries(&path).unwrap().len();
         let torn = folder.frames().join(".jstsph-abc.tmp");
         fs::write(&torn, "half").unwrap();
-        assert_eq!(ResultsFolder::open(&path).unwrap(), folder);
+        drop(folder);
+        assert_eq!(ResultsFolder::open(&path).unwrap().path(), path);
         assert!(!torn.exists());
         assert_eq!(entries(&path).unwrap().len(), before);
         let missing = ResultsFolder::open(&place.path().join("missing")).unwrap_err();
         assert!(missing.to_string().contains("missing"), "{missing}");
+        // A folder that holds something else stays as it is.
+        let foreign = place.path().join("foreign");
+        fs::create_dir(&foreign).unwrap();
+        assert!(matches!(
+            ResultsFolder::open(&foreign),
+            Err(OutputError::NoRun { .. })
+        ));
+        assert!(entries(&foreign).unwrap().is_empty());
+    }
+
+    #[test]
+    fn a_folder_in_use_is_refused_in_every_way_and_left_alone() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("results");
+        let first = run(&path);
+        for result in [
+            ResultsFolder::create(&path, false),
+            ResultsFolder::create(&path, true),
+            ResultsFolder::open(&path),
+        ] {
+            assert!(matches!(result, Err(OutputError::FolderInUse { .. })));
+        }
+        assert!(first.history().exists());
+        drop(first);
+        assert!(matches!(
+            ResultsFolder::create(&path, false),
+            Err(OutputError::FolderNotEmpty { .. })
+        ));
+        ResultsFolder::open(&path).unwrap();
     }
 
     #[test]

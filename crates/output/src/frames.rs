@@ -73,6 +73,10 @@ impl Collection {
     pub fn add(&mut self, time: f64, file: &str) -> Result<(), OutputError> {
         self.entries.retain(|(_, other)| other != file);
         self.entries.push((time, file.to_owned()));
+        self.write()
+    }
+
+    fn write(&self) -> Result<(), OutputError> {
         atomic_write(&self.path, |writer| {
             writeln!(writer, "<?xml version=\"1.0\"?>")?;
             writeln!(
@@ -116,15 +120,31 @@ impl FrameSeries {
         }
     }
 
-    /// Continues a series after the frame at or before `time` (s); later frames are overwritten.
+    /// Continues a series after the frame at or before `time` (s); later frames, and a frame that a
+    /// killed run had not yet put into the collection, are removed.
     ///
     /// # Errors
-    /// Those of [`Collection::resume`].
+    /// Those of [`Collection::resume`]; [`OutputError::Io`].
     pub fn resume(folder: &Path, options: FrameOptions, time: f64) -> Result<Self, OutputError> {
+        let collection = Collection::resume(&folder.join(COLLECTION), time)?;
+        // First the list, then the files: the list never names a file that is not there.
+        collection.write()?;
+        let kept = |name: &str| {
+            name == COLLECTION || collection.entries.iter().any(|(_, file)| file == name)
+        };
+        let listing = std::fs::read_dir(folder).map_err(OutputError::io("list", folder))?;
+        for entry in listing {
+            let entry = entry.map_err(OutputError::io("list", folder))?;
+            let name = entry.file_name();
+            if name.to_str().is_some_and(|n| is_frame_file(n) && !kept(n)) {
+                let path = entry.path();
+                std::fs::remove_file(&path).map_err(OutputError::io("remove", &path))?;
+            }
+        }
         Ok(Self {
             folder: folder.to_path_buf(),
             options,
-            collection: Collection::resume(&folder.join(COLLECTION), time)?,
+            collection,
         })
     }
 
@@ -205,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn a_resumed_series_overwrites_the_frames_it_forgot() {
+    fn a_resumed_series_removes_the_frames_it_forgot() {
         let folder = tempfile::tempdir().unwrap();
         let positions = [Vec3::zeros()];
         let options = FrameOptions::default();
@@ -216,6 +236,14 @@ mod tests {
         }
         let mut series = FrameSeries::resume(folder.path(), options, 1.5).unwrap();
         assert_eq!(series.last_time(), Some(1.0));
+        assert!(!folder.path().join("frame_000002.vtu").exists());
+        assert_eq!(
+            Collection::read(&folder.path().join(COLLECTION))
+                .unwrap()
+                .entries()
+                .len(),
+            2
+        );
         let path = series.write(&Frame::new(1.75, 9, &positions)).unwrap();
         assert!(path.ends_with("frame_000002.vtu"));
         let collection = Collection::resume(&folder.path().join(COLLECTION), 10.0).unwrap();

@@ -144,6 +144,14 @@ impl HistoryWriter {
         values.extend_from_slice(row.probes);
         self.table.append_with_gaps(&values, required)
     }
+
+    /// Waits until all rows are on the disk.
+    ///
+    /// # Errors
+    /// Those of [`TableWriter::sync`].
+    pub fn sync(&self) -> Result<(), OutputError> {
+        self.table.sync()
+    }
 }
 
 fn columns(probes: &[String]) -> Vec<String> {

@@ -41,6 +41,7 @@ mod frame;
 mod frames;
 mod history;
 mod json;
+mod lock;
 pub mod plot;
 mod record;
 pub mod report;
@@ -59,7 +60,8 @@ pub use frames::{Collection, FrameSeries};
 pub use history::{HISTORY_COLUMNS, HistoryColumn, HistoryRow, HistoryWriter};
 pub use record::{Machine, RunRecord};
 pub use restart::{
-    RestartArray, RestartData, RestartProblem, RestartWarning, read_latest_restart, write_restart,
+    RestartArray, RestartData, RestartProblem, RestartWarning, latest_restart, read_latest_restart,
+    write_restart,
 };
 pub use stored::{StoredCells, StoredFrame, read_vtu};
 pub use summary::{Energies, Extremes, Status, Summary};

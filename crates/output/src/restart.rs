@@ -123,6 +123,14 @@ pub fn read_latest_restart(
     })
 }
 
+/// Path of the restart file that [`read_latest_restart`] would use; `None` if there is none.
+#[must_use]
+pub fn latest_restart(folder: &Path) -> Option<PathBuf> {
+    let usable = |path: &PathBuf| std::fs::read(path).is_ok_and(|bytes| decode(&bytes).is_ok());
+    let mut paths = states(folder).ok()?.into_iter().map(|(_, path)| path);
+    paths.find(usable)
+}
+
 /// Step of a restart file by its name.
 pub(crate) fn step_of(name: &str) -> Option<u64> {
     let digits = name.strip_prefix("state-")?.strip_suffix(".jstsph")?;
@@ -379,21 +387,26 @@ mod tests {
         let last = write_restart(folder.path(), 6, &numbered(6)).unwrap();
         let bytes = std::fs::read(&last).unwrap();
         std::fs::write(&last, &bytes[..bytes.len() - 3]).unwrap();
+        std::fs::write(folder.path().join("state-8.jstsph"), "").unwrap();
         let foreign = folder.path().join("state-7.jstsph");
         std::fs::write(&foreign, "my notes").unwrap();
         std::fs::write(folder.path().join("notes.txt"), "ignored").unwrap();
 
         let (data, warnings) = read_latest_restart(folder.path()).unwrap();
         assert_eq!(data.header, json!(5));
+        let latest = latest_restart(folder.path()).unwrap();
+        assert!(latest.ends_with("state-000000000005.jstsph"));
         let problems: Vec<_> = warnings.iter().map(|w| w.problem.clone()).collect();
-        assert_eq!(problems, [RestartProblem::Foreign, RestartProblem::Damaged]);
+        let (foreign, damaged) = (RestartProblem::Foreign, RestartProblem::Damaged);
+        assert_eq!(problems, [foreign.clone(), foreign, damaged]);
         assert!(
-            warnings[0]
+            warnings[1]
                 .to_string()
                 .ends_with("state-7.jstsph is not a restart file")
         );
 
         std::fs::remove_file(folder.path().join("state-000000000005.jstsph")).unwrap();
+        assert_eq!(latest_restart(folder.path()), None);
         let text = read_latest_restart(folder.path()).unwrap_err().to_string();
         assert!(
             text.contains("not a restart file") && text.contains("checksum"),

@@ -455,11 +455,11 @@ mod tests {
     fn a_file_that_was_cut_off_or_changed_is_refused_with_the_array() {
         let whole = written(&Sample::new().frame(), FrameOptions::default());
         let end = whole.len() - b"\n  </AppendedData>\n</VTKFile>\n".len();
-        // The last array holds the cells' types.
+        // The arrays lie last first: the one at the end is the first field.
         let error = parse(&whole[..end - 1]).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "array `types` is cut off or damaged; the file cannot be used"
+            "array `pressure & <more>` is cut off or damaged; the file cannot be used"
         );
         for cut in [0, 100, end / 2, end - 40] {
             assert!(parse(&whole[..cut]).is_err(), "{cut}");

@@ -88,6 +88,8 @@ pub struct TableWriter {
     path: PathBuf,
     columns: Vec<String>,
     file: File,
+    /// Length of the file, bytes: header and whole rows.
+    length: u64,
 }
 
 impl TableWriter {
@@ -144,10 +146,15 @@ impl TableWriter {
             .append(true)
             .open(path)
             .map_err(OutputError::io("open", path))?;
+        let length = file
+            .metadata()
+            .map_err(OutputError::io("open", path))?
+            .len();
         Ok(Self {
             path: path.to_path_buf(),
             columns,
             file,
+            length,
         })
     }
 
@@ -183,9 +190,25 @@ impl TableWriter {
             })?;
         }
         // One call for the whole line: a reader never sees half a number of a running simulation.
+        let line = line(row);
+        if let Err(error) = self.file.write_all(line.as_bytes()) {
+            // A full disk may have taken a part of the line. If cutting it off fails too, the
+            // table is cut when the run is resumed.
+            let _ = self.file.set_len(self.length);
+            return Err(OutputError::io("append to", &self.path)(error));
+        }
+        self.length += line.len() as u64;
+        Ok(())
+    }
+
+    /// Waits until all rows are on the disk, where not even a power failure loses them.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`].
+    pub fn sync(&self) -> Result<(), OutputError> {
         self.file
-            .write_all(line(row).as_bytes())
-            .map_err(OutputError::io("append to", &self.path))
+            .sync_data()
+            .map_err(OutputError::io("write", &self.path))
     }
 }
 

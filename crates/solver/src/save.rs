@@ -164,6 +164,12 @@ impl Simulation {
                 work.volumetric_stress.clone(),
             ),
             ("plastic_work".to_owned(), work.plastic_work.clone()),
+            // The next step does not need them, the energies (4.1) of the last one do.
+            (
+                "internal_force".to_owned(),
+                flat_vectors(&work.internal_force),
+            ),
+            ("dissipation".to_owned(), flat_vectors(&work.dissipation)),
             (
                 "jacobian_dissipation".to_owned(),
                 work.jacobian_dissipation.clone(),
@@ -254,6 +260,8 @@ impl Simulation {
         arrays.tensors("scaled_stress", &mut work.scaled_stress)?;
         arrays.scalars("volumetric_stress", &mut work.volumetric_stress)?;
         arrays.scalars("plastic_work", &mut work.plastic_work)?;
+        arrays.vectors("internal_force", &mut work.internal_force)?;
+        arrays.vectors("dissipation", &mut work.dissipation)?;
         arrays.scalars("jacobian_dissipation", &mut work.jacobian_dissipation)?;
         arrays.vectors("momentum_before", &mut ledger.momentum_before)?;
         arrays.work("work", &mut ledger.work)?;

@@ -3,9 +3,9 @@
 use jstsph_solver::{Formulation, Integrator, Laplacian, Quadrature, SmoothingReference, Weights};
 use jstsph_sph::Kernel;
 
-use super::Kind::{Choice, Flag, Number, Table, TableOr};
+use super::Kind::{Choice, Count, Flag, Number, Other, Table, TableOr};
 use super::Presence::{Default, Derived, Optional, Required};
-use super::{COEFFICIENT, Key, Limit, key, names};
+use super::{COEFFICIENT, Form, Key, Limit, key, names};
 use crate::case::{FrameCells, Precision};
 use crate::units::Measure;
 
@@ -265,16 +265,40 @@ pub const OUTPUT: &[Key] = &[
         "simulated time between rows of history.csv",
     ),
     key(
+        "history_steps",
+        Count(1),
+        Optional,
+        "steps between rows of history.csv, instead of history_interval",
+    ),
+    key(
         "frame_interval",
         Number(Measure::TIME, Limit::Positive),
         Derived("end / 50"),
         "simulated time between frames for ParaView",
     ),
     key(
+        "frame_steps",
+        Count(1),
+        Optional,
+        "steps between frames, instead of frame_interval",
+    ),
+    key(
         "restart_interval",
         Number(Measure::TIME, Limit::Positive),
         Derived("end / 10"),
         "simulated time between restart files",
+    ),
+    key(
+        "restart_steps",
+        Count(1),
+        Optional,
+        "steps between restart files, instead of restart_interval",
+    ),
+    key(
+        "fields",
+        Other("a list of names of fields", Form::Fields),
+        Optional,
+        "fields in frames; all of them unless some are chosen",
     ),
     key(
         "precision",
@@ -294,6 +318,21 @@ pub const OUTPUT: &[Key] = &[
         Default("\"lattice\""),
         "what ParaView shows: the cells of the lattice (where all bodies have one) or the particles as points",
     ),
+];
+
+/// Fields of frames, in the order in which they are written.
+pub const FRAME_FIELDS: &[&str] = &[
+    "displacement",
+    "velocity",
+    "deformation_gradient",
+    "jacobian",
+    "determinant",
+    "cauchy_stress",
+    "von_mises_stress",
+    "pressure",
+    "equivalent_plastic_strain",
+    "wave_speed",
+    "temperature",
 ];
 
 /// Precisions by name.

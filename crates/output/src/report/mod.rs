@@ -81,8 +81,8 @@ pub struct ReportSize {
 impl Report<'_> {
     /// Writes the report of the results folder `folder` to `path`, atomically.
     ///
-    /// Frames, `case.toml` and, where they exist, `summary.json`, `run.json` and `run.log` are read
-    /// from the folder. The file stays below 15 MB as long as its curves and its last frame do: where
+    /// Frames, `case.toml` and, where they exist, `case.original.toml`, `summary.json`, `run.json` and
+    /// `run.log` are read from the folder. The file stays below 15 MB as long as its curves and its last frame do: where
     /// needed fields are rounded to 16 bits, then components of vectors and tensors are
     /// left out, then frames.
     ///
@@ -96,6 +96,7 @@ impl Report<'_> {
             summary: optional(folder, SUMMARY, |_| Summary::read(folder))?,
             record: optional(folder, RECORD, read_json)?,
             case: optional(folder, "case.toml", read_text)?.unwrap_or_default(),
+            original: optional(folder, "case.original.toml", read_text)?.unwrap_or_default(),
             log: optional(folder, "run.log", read_text)?.unwrap_or_default(),
         };
         let text = page::page(self, &packed, &files)
@@ -115,6 +116,7 @@ struct Files {
     summary: Option<Summary>,
     record: Option<RunRecord>,
     case: String,
+    original: String,
     log: String,
 }
 

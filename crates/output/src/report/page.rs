@@ -45,6 +45,8 @@ struct Data<'a> {
     diagrams: Vec<Diagram<'a>>,
     colour_maps: Vec<(&'static str, &'static [[u8; 3]])>,
     case_text: &'a str,
+    /// As its author wrote it; empty if it is not known.
+    original_case: &'a str,
     log: &'a str,
 }
 
@@ -122,6 +124,7 @@ pub(super) fn page(
             .map(|(name, map)| (*name, map.table().as_slice()))
             .collect(),
         case_text: &files.case,
+        original_case: &files.original,
         log: tail(&files.log),
     };
     let mut pieces = format!(

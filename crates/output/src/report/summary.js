@@ -88,6 +88,8 @@ function showSummary() {
     element("warnings").append(...warnings.map((text) => make("p", {}, text)));
   }
   element("case-text").textContent = DATA.case_text;
+  element("original-text").textContent = DATA.original_case;
+  element("original").hidden = DATA.original_case === "";
   element("log-text").textContent = DATA.log || "No log was recorded.";
   const { kept, total, is_quantised: isQuantised } = DATA.frames;
   const notes = [];

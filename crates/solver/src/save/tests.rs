@@ -93,6 +93,30 @@ fn a_restored_run_goes_on_with_the_same_bits() {
 }
 
 #[test]
+fn a_restored_simulation_reports_the_same_numbers_before_its_next_step() {
+    for model in models([9, 6, 1]) {
+        let what = describe(&model);
+        let mut run_on = Simulation::new(model.clone()).unwrap();
+        run(&mut run_on, 40);
+        let mut restored = Simulation::new(model).unwrap();
+        restored.restore(&run_on.save()).unwrap();
+        let paper = run_on.paper_energies();
+        assert!(paper.internal > 0.0 && paper.plastic > 0.0, "{what}");
+        assert_eq!(restored.paper_energies(), paper, "{what}");
+        assert_eq!(restored.momenta(), run_on.momenta(), "{what}");
+        assert_eq!(restored.energies(), run_on.energies(), "{what}");
+        assert_eq!(restored.time_step(), run_on.time_step(), "{what}");
+        assert_eq!(
+            restored.stable_time_step(),
+            run_on.stable_time_step(),
+            "{what}"
+        );
+        let [here, there] = [&restored, &run_on].map(Simulation::particle_fields);
+        assert_eq!(format!("{here:?}"), format!("{there:?}"), "{what}");
+    }
+}
+
+#[test]
 fn a_run_stopped_at_its_end_is_restored_synchronised() {
     for integrator in INTEGRATORS {
         let model = impact([6, 5, 1], scheme(Quadrature::Bonds, integrator));
