@@ -79,6 +79,9 @@ pub(crate) struct RunOptions {
     /// Print mistakes only
     #[arg(long)]
     pub(crate) quiet: bool,
+    /// Print at the end where the time went, per phase of a step
+    #[arg(long)]
+    pub(crate) profile: bool,
     /// Replace the results of an earlier run in the same folder
     #[arg(long, conflicts_with = "resume")]
     pub(crate) force: bool,

@@ -24,6 +24,7 @@ mod error;
 mod interrupt;
 mod list;
 mod plot;
+mod profile;
 mod progress;
 mod recorder;
 mod report;

@@ -2,6 +2,7 @@
 
 use std::ffi::OsString;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -18,6 +19,7 @@ use crate::arguments::RunOptions;
 use crate::console::Console;
 use crate::error::CliError;
 use crate::plot;
+use crate::profile::Profile;
 use crate::progress::Progress;
 use crate::recorder::{Recorder, energies, extra_columns, extremes, probe_values};
 use crate::restart::{LastRow, decode};
@@ -192,10 +194,14 @@ impl Job<'_> {
             .map_err(stopped(time))?;
         let mut progress = Progress::new(simulation, self.case.time.end, self.options.quiet);
         let first_step = simulation.step_count();
+        let profile = self.options.profile.then(|| Arc::new(Profile::start()));
+        if let Some(profile) = &profile {
+            simulation.watch(profile.clone());
+        }
         let end = self.advance(
             simulation,
             &mut recorder,
-            &mut progress,
+            (&mut progress, profile.as_deref()),
             folder,
             console,
             interrupted,
@@ -236,6 +242,11 @@ impl Job<'_> {
         record.finish(wall, reason.clone());
         record.write(folder.path()).map_err(stopped(time))?;
         folder.log(&reason).map_err(stopped(time))?;
+        if let Some(profile) = &profile {
+            let (particles, points) = (summary.particles as usize, summary.points as usize);
+            let steps = simulation.step_count().saturating_sub(first_step);
+            console.print(profile.table(steps, particles, points));
+        }
         if !self.options.quiet {
             console.print(verdict::verdict(
                 &summary,
@@ -351,7 +362,7 @@ impl Job<'_> {
         &self,
         simulation: &mut Simulation,
         recorder: &mut Recorder<'_>,
-        progress: &mut Progress,
+        (progress, profile): (&mut Progress, Option<&Profile>),
         folder: &ResultsFolder,
         console: &mut Console<'_>,
         interrupted: &AtomicBool,
@@ -373,6 +384,9 @@ impl Job<'_> {
             }
             if let Some(line) = progress.update(simulation, console) {
                 folder.log(&line)?;
+            }
+            if let Some(profile) = profile {
+                profile.output();
             }
             if interrupted.load(Ordering::Relaxed) && simulation.time() < end {
                 return recorder.interrupt(simulation).map(End::Interrupted);

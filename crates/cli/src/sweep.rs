@@ -142,6 +142,7 @@ impl Job {
             threads: Some(1),
             overrides: Vec::new(),
             no_pictures: true,
+            profile: false,
             quiet: true,
             force: true,
             resume: false,

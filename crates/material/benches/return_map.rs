@@ -2,11 +2,15 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use jstsph_material::models::HenckyVonMises;
-use jstsph_material::{Kinematics, Material, MaterialSpec, PlasticHistory, library};
+use jstsph_material::{
+    Kinematics, KinematicsTile, Material, MaterialSpec, PlasticHistory, ResponseTile, library,
+};
 use jstsph_tensor::Mat3;
+use jstsph_tensor::lanes::TILE;
 use std::hint::black_box;
 
-const POINTS: usize = 1000;
+/// Whole tiles.
+const POINTS: usize = 30 * TILE;
 
 /// Points that have flowed to ε_p of about 0.3 and are then strained further by `size`.
 fn points(model: &HenckyVonMises, plane: bool, size: f64) -> Vec<(Kinematics, PlasticHistory)> {
@@ -41,6 +45,17 @@ fn points(model: &HenckyVonMises, plane: bool, size: f64) -> Vec<(Kinematics, Pl
         .collect()
 }
 
+/// Points that are answered together.
+fn tile(points: &[(Kinematics, PlasticHistory)]) -> (KinematicsTile, [PlasticHistory; TILE]) {
+    let mut tile = KinematicsTile::new(points[0].0.dt);
+    let gradients: Vec<Mat3> = points.iter().map(|p| p.0.deformation_gradient).collect();
+    tile.deformation_gradient.read(&gradients);
+    for (i, (now, _)) in points.iter().enumerate() {
+        (tile.jacobian[i], tile.temperature[i]) = (now.jacobian, now.temperature);
+    }
+    (tile, std::array::from_fn(|i| points[i].1))
+}
+
 fn return_map(criterion: &mut Criterion) {
     for entry in library() {
         let MaterialSpec::HenckyVonMises(model) = &entry.spec else {
@@ -70,6 +85,25 @@ fn return_map(criterion: &mut Criterion) {
                         }
                     });
                 });
+                group.bench_function(
+                    BenchmarkId::new(format!("{dimension}_tiles"), kind),
+                    |bencher| {
+                        let tiles: Vec<_> = points.chunks_exact(TILE).map(tile).collect();
+                        let mut response = ResponseTile::ZERO;
+                        bencher.iter(|| {
+                            for (now, old) in &tiles {
+                                let mut new = *old;
+                                black_box(model.respond_tile(
+                                    black_box(now),
+                                    black_box(old),
+                                    &mut new,
+                                    &mut response,
+                                ));
+                                black_box(&new);
+                            }
+                        });
+                    },
+                );
             }
         }
         group.finish();

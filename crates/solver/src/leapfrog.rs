@@ -2,6 +2,7 @@
 
 use crate::constraint::Stage;
 use crate::model::Formulation;
+use crate::profile::Phase;
 use crate::simulation::{Simulation, work_of};
 use crate::state::{Impulse, Ledger, State, Work};
 use crate::{SolverError, parallel, strain};
@@ -31,20 +32,28 @@ pub(crate) enum Kick {
 pub(crate) fn step(simulation: &mut Simulation, end: f64) -> Result<(), SolverError> {
     if simulation.synchronised {
         simulation.dt = simulation.next_time_step(end)?;
+        simulation.finished(Phase::TimeStep);
         simulation.velocity_gradient();
+        simulation.finished(Phase::Gradient);
         simulation.forces(|state, a| state.position[a]);
         simulation.kick(Kick::Opening, 0.5 * simulation.dt, simulation.dt);
         simulation.synchronised = false;
+        simulation.finished(Phase::Constraint);
     }
     // Shorter than the travel that was planned only if `end` was moved back since.
     let dt = simulation.dt.min(end - simulation.time);
     simulation.move_particles(dt);
+    simulation.finished(Phase::Strain);
     simulation.velocity_gradient();
+    simulation.finished(Phase::Gradient);
     simulation.drift_strains(dt);
+    simulation.finished(Phase::Strain);
     simulation.advance_time(dt, end);
     simulation.evaluate_stress(dt)?;
     simulation.commit_history();
+    simulation.finished(Phase::Stress);
     simulation.advance_heat(dt)?;
+    simulation.finished(Phase::Heat);
 
     simulation.forces(|state, a| state.position[a]);
     if simulation.time >= end {
@@ -52,9 +61,11 @@ pub(crate) fn step(simulation: &mut Simulation, end: f64) -> Result<(), SolverEr
         simulation.synchronised = true;
     } else {
         let next = simulation.next_time_step(end)?;
+        simulation.finished(Phase::TimeStep);
         simulation.kick(Kick::Full, 0.5 * (dt + next), next);
         simulation.dt = next;
     }
+    simulation.finished(Phase::Constraint);
     Ok(())
 }
 

@@ -75,6 +75,7 @@ mod leapfrog;
 mod model;
 mod parallel;
 mod probe;
+mod profile;
 mod projection;
 mod reference;
 mod save;
@@ -97,6 +98,7 @@ pub use model::{
     SmoothingReference, Stabilisation, Viscosity, Weights,
 };
 pub use probe::{EdgePart, Field, Probe, ProbeKind, Statistic};
+pub use profile::{Phase, PhaseObserver};
 pub use reference::{BodyReference, Reference, Shares};
 pub use save::Saved;
 pub use simulation::Simulation;

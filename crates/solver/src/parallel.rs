@@ -10,6 +10,9 @@ use rayon::prelude::*;
 /// Items per task.
 const CHUNK: usize = 256;
 
+/// Most items of a leaf of a reduction.
+pub(crate) const LEAF: usize = 2 * CHUNK;
+
 /// Below this many items a loop runs serially: a parallel call costs about as much as a hundred
 /// particles.
 const SERIAL_BELOW: usize = 2048;
@@ -175,7 +178,7 @@ pub(crate) fn reduce<T: Send>(
         leaf: &(impl Fn(std::ops::Range<usize>) -> T + Sync),
         join: &(impl Fn(T, T) -> T + Sync),
     ) -> T {
-        if range.len() <= 2 * CHUNK {
+        if range.len() <= LEAF {
             return leaf(range);
         }
         let middle = range.start + range.len() / 2;

@@ -9,6 +9,7 @@ use crate::eulerian::CurrentKernels;
 use crate::force::Loads;
 use crate::heat::{HeatProcess, HeatStep, OutOfRange};
 use crate::model::{Formulation, Integrator, Model, Scheme};
+use crate::profile::{Observer, Phase};
 use crate::reference::Reference;
 use crate::state::{Impulse, Ledger, State, Work, Workspace};
 use crate::strain::Strains;
@@ -41,6 +42,7 @@ pub struct Simulation {
     pub(crate) start: Option<Box<State>>,
     /// Equivalent plastic strain of the points, kept when a dissipation depends on it.
     plastic_strain: Vec<f64>,
+    pub(crate) observer: Observer,
     pub(crate) time: f64,
     pub(crate) dt: f64,
     pub(crate) step: u64,
@@ -120,6 +122,7 @@ impl Simulation {
             obstacles,
             start,
             plastic_strain: vec![0.0; plastic],
+            observer: None,
             time: 0.0,
             dt: 0.0,
             step: 0,
@@ -265,6 +268,7 @@ impl Simulation {
             Some(kernels) => kernels.forces(&self.reference, &self.state, &mut self.work),
             None => force::internal(&self.reference, &mut self.work),
         }
+        self.finished(Phase::Force);
         if stabilisation.upwind != 0.0 || stabilisation.hourglass != 0.0 {
             force::average_to_particles(
                 &self.reference,
@@ -303,6 +307,7 @@ impl Simulation {
         }
         self.loads
             .evaluate(&self.reference, self.time, &mut self.work.external_force);
+        self.finished(Phase::Stabilisation);
     }
 
     /// Stress of the present strains from the committed history, with the temperatures that go

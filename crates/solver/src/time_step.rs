@@ -1,10 +1,14 @@
 //! The stable time step (3.17), `[eq:time-step]`.
 
-use jstsph_tensor::{Mat3, double_dot, largest_eigenvalue, norm_squared};
+use std::ops::Range;
+
+use jstsph_tensor::{Mat3, double_dot, largest_eigenvalue};
 
 use crate::parallel;
 use crate::reference::Reference;
 use crate::state::State;
+
+mod bound;
 
 /// Candidates whose upper bound is below the present maximum by this factor are skipped; it is far
 /// above the round-off of either number, so that skipping never changes the maximum.
@@ -37,6 +41,46 @@ fn inverse_cauchy_green(deformation_gradient: &Mat3, cofactor: &Mat3) -> Mat3 {
     cofactor.transpose() * cofactor * (1.0 / (determinant * determinant))
 }
 
+/// The largest 1/λ² of a range of at most [`parallel::LEAF`] points, the first of them where several
+/// have it; not a number, at the first such point, where a strain is not finite.
+fn steepest_of(range: Range<usize>, gradients: &[Mat3], cofactors: &[Mat3]) -> Steepest {
+    let start = range.start;
+    let mut buffer = [0.0; parallel::LEAF];
+    let bounds = &mut buffer[..range.len()];
+    bound::evaluate(&gradients[range.clone()], &cofactors[range], bounds);
+    let mut largest = 0;
+    for (k, bound) in bounds.iter().enumerate() {
+        if !bound.is_finite() {
+            return Steepest {
+                inverse_stretch_squared: f64::NAN,
+                point: start + k,
+            };
+        }
+        if *bound > bounds[largest] {
+            largest = k;
+        }
+    }
+    // The point with the largest bound first: few others then need their value.
+    let value = |k: usize| {
+        let (f, h) = (&gradients[start + k], &cofactors[start + k]);
+        largest_eigenvalue(&inverse_cauchy_green(f, h))
+    };
+    let (mut best, mut at) = (value(largest), largest);
+    for (k, bound) in bounds.iter().enumerate() {
+        if k == largest || bound * BOUND_MARGIN < best {
+            continue;
+        }
+        let value = value(k);
+        if value > best || (value == best && k < at) {
+            (best, at) = (value, k);
+        }
+    }
+    Steepest {
+        inverse_stretch_squared: best,
+        point: start + at,
+    }
+}
+
 /// Δt / CFL = min Δx λ_min / c_p over all points: compression makes waves faster in the reference
 /// configuration by one over the smallest principal stretch (3.17; the algorithm box's formula
 /// is garbled, docs/theory.md).
@@ -52,38 +96,7 @@ pub(crate) fn stable_step(reference: &Reference, state: &State) -> StableStep {
         let cofactors = &state.cofactor[body.points.clone()];
         let steepest = parallel::reduce(
             gradients.len(),
-            &|range| {
-                let mut best = Steepest {
-                    inverse_stretch_squared: 0.0,
-                    point: range.start,
-                };
-                for q in range {
-                    let inverse = inverse_cauchy_green(&gradients[q], &cofactors[q]);
-                    let bound = norm_squared(&inverse).sqrt();
-                    // The Frobenius norm bounds the largest principal value; NaN never skips.
-                    if bound * BOUND_MARGIN < best.inverse_stretch_squared {
-                        continue;
-                    }
-                    let value = if bound.is_finite() {
-                        largest_eigenvalue(&inverse)
-                    } else {
-                        f64::NAN
-                    };
-                    if value.is_nan() {
-                        return Steepest {
-                            inverse_stretch_squared: f64::NAN,
-                            point: q,
-                        };
-                    }
-                    if value > best.inverse_stretch_squared {
-                        best = Steepest {
-                            inverse_stretch_squared: value,
-                            point: q,
-                        };
-                    }
-                }
-                best
-            },
+            &|range| steepest_of(range, gradients, cofactors),
             &|a: Steepest, b: Steepest| {
                 if a.inverse_stretch_squared.is_nan()
                     || a.inverse_stretch_squared >= b.inverse_stretch_squared

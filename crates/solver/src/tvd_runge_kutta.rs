@@ -2,6 +2,7 @@
 
 use crate::constraint::Stage;
 use crate::model::Formulation;
+use crate::profile::Phase;
 use crate::simulation::{Simulation, work_of};
 use crate::state::{Impulse, Ledger, State};
 use crate::strain::constrain;
@@ -20,30 +21,42 @@ use crate::{SolverError, parallel, strain};
 /// which makes the discrete angular momentum exact. docs/theory.md.
 pub(crate) fn step(simulation: &mut Simulation, end: f64) -> Result<(), SolverError> {
     let dt = simulation.next_time_step(end)?;
+    simulation.finished(Phase::TimeStep);
     let time = simulation.time;
     simulation.dt = dt;
     simulation.open_books();
     simulation.save_start();
 
     simulation.velocity_gradient();
+    simulation.finished(Phase::Gradient);
     simulation.forces(|state, a| state.position[a]);
     simulation.stage(dt);
+    simulation.finished(Phase::Strain);
     simulation.move_obstacles(time, dt);
     simulation.constrain(time + dt, dt, Stage::First);
+    simulation.finished(Phase::Constraint);
     simulation.evaluate_stress(dt)?;
+    simulation.finished(Phase::Stress);
 
     simulation.velocity_gradient();
+    simulation.finished(Phase::Gradient);
     simulation.stage_two_forces(dt);
     simulation.stage(dt);
+    simulation.finished(Phase::Strain);
     simulation.constrain(time + dt, dt, Stage::Second);
 
     simulation.average_with_start();
     simulation.constrain(time + dt, dt, Stage::Average);
     simulation.advance_clock(dt, end);
+    simulation.finished(Phase::Constraint);
     simulation.evaluate_stress(dt)?;
     simulation.commit_history();
+    simulation.finished(Phase::Stress);
     simulation.close_books();
-    simulation.advance_heat(dt)
+    simulation.finished(Phase::Constraint);
+    simulation.advance_heat(dt)?;
+    simulation.finished(Phase::Heat);
+    Ok(())
 }
 
 impl Simulation {

@@ -87,6 +87,13 @@ fn gradient(group: &mut Group<'_>, name: &str, operator: &GradientOperator) {
             black_box(gradients.last().copied())
         });
     });
+    let padded: Vec<_> = field.iter().map(|f| [f.x, f.y, f.z, 0.0]).collect();
+    group.bench_function(format!("{name}_runs"), |b| {
+        b.iter(|| {
+            operator.scaled_gradients(0, black_box(&padded), 1.0, &mut gradients);
+            black_box(gradients.last().copied())
+        });
+    });
 }
 
 fn divergence(group: &mut Group<'_>, name: &str, operator: &GradientOperator) {
@@ -100,6 +107,12 @@ fn divergence(group: &mut Group<'_>, name: &str, operator: &GradientOperator) {
             for (c, force) in forces.iter_mut().enumerate() {
                 *force = operator.divergence_at(c, black_box(&stresses));
             }
+            black_box(forces.last().copied())
+        });
+    });
+    group.bench_function(format!("{name}_runs"), |b| {
+        b.iter(|| {
+            operator.divergences(0, black_box(&stresses), &mut forces);
             black_box(forces.last().copied())
         });
     });

@@ -119,6 +119,7 @@ impl Job<'_> {
             threads: self.options.threads,
             overrides: Vec::new(),
             no_pictures: true,
+            profile: false,
             quiet: false,
             // Results of another version or of other settings make room.
             force: true,

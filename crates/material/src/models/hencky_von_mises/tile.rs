@@ -2,7 +2,7 @@
 //! of radial return point by point. Same formulas, same order, same bits as `respond`.
 
 use super::HenckyVonMises;
-use crate::hardening::FlowState;
+use crate::hardening::{FlowState, FlowStress};
 use crate::logarithmic_strain::{
     LONG_EXPONENTIAL, LONG_LOGARITHM, SERIES_LIMIT, SHORT_EXPONENTIAL, SHORT_LOGARITHM,
     SHORT_SERIES_LIMIT,
@@ -139,6 +139,15 @@ impl Flow {
             direction: [0.0; TILE],
             ratio: [1.0; TILE],
         };
+        // All yield stresses first: independent of each other, their powers and logarithms overlap.
+        let mut starts = [FlowStress::rate_independent(0.0, 0.0); TILE];
+        for (i, old) in old.iter().enumerate() {
+            starts[i] = model.hardening.flow_stress(&FlowState {
+                plastic_strain: old.equivalent_plastic_strain,
+                rate: 0.0,
+                temperature: now.temperature[i],
+            });
+        }
         for (i, old) in old.iter().enumerate() {
             let (determinant, jacobian) = (trial.determinant[i], now.jacobian[i]);
             let sound = determinant > 0.0
@@ -151,11 +160,7 @@ impl Flow {
             }
             let trial_stress = trial.equivalent_stress[i];
             let temperature = now.temperature[i];
-            let start = model.hardening.flow_stress(&FlowState {
-                plastic_strain: old.equivalent_plastic_strain,
-                rate: 0.0,
-                temperature,
-            });
+            let start = starts[i];
             if trial_stress <= jacobian * start.value {
                 continue;
             }
@@ -323,9 +328,9 @@ fn cofactor_transposed<S: Simd>(
 #[inline(always)]
 fn product<S: Simd>(a: &Full<S>, b: &Full<S>) -> Full<S> {
     let mut product = *a;
-    for k in 0..9 {
+    for (k, entry) in product.iter_mut().enumerate() {
         let (i, j) = (k % 3, 3 * (k / 3));
-        product[k] = a[i] * b[j] + a[i + 3] * b[j + 1] + a[i + 6] * b[j + 2];
+        *entry = a[i] * b[j] + a[i + 3] * b[j + 1] + a[i + 6] * b[j + 2];
     }
     product
 }
