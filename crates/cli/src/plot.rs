@@ -1,6 +1,7 @@
 //! `jstsph plot`, and the pictures at the end of a run.
 
 pub(crate) mod body;
+mod curves;
 pub(crate) mod diagrams;
 pub(crate) mod field;
 mod frames;
@@ -11,64 +12,159 @@ mod setup;
 use std::path::{Path, PathBuf};
 
 use jstsph_case::Case;
-use jstsph_output::plot::Figure;
+use jstsph_output::plot::{Figure, Movie};
 use jstsph_output::read_table;
 
 use crate::arguments::{Look, PlotOptions, ViewName};
 use crate::console::Console;
 use crate::error::CliError;
+use body::Drawn;
+use curves::Told;
 
 /// The field of the picture at the end of a run.
 const FIELD: &str = "equivalent_plastic_strain";
 
-/// Draws one picture of a results folder.
+/// Draws one picture of a results folder, or of several to compare.
 pub(crate) fn run(options: &PlotOptions, console: &mut Console<'_>) -> Result<u8, CliError> {
     if let Some(path) = &options.output {
         format(path)?;
     }
-    let case = options.results.join("case.toml");
-    if !case.is_file() {
-        let path = options.results.clone();
-        return Err(CliError::NoResults { path });
+    let labels = labels(&options.results);
+    let cases = options
+        .results
+        .iter()
+        .map(|folder| read_case(folder))
+        .collect::<Result<Vec<_>, _>>()?;
+    let field = options.field.as_deref().unwrap_or(FIELD);
+    if let Some(path) = &options.animate {
+        let movie = movie(path)?;
+        if cases.len() > 1 {
+            return Err(CliError::MovieRuns { count: cases.len() });
+        }
+        let chosen = frames::all(&options.results[0])?;
+        let drawn = Drawn {
+            case: &cases[0],
+            chosen: &chosen,
+            label: "",
+        };
+        body::animation(drawn, field, &options.look)?
+            .save(movie, path)
+            .map_err(CliError::Picture)?;
+        console.print(format_args!("wrote {}\n", path.display()));
+        return Ok(0);
     }
-    let case = jstsph_case::load(&case, &[])?;
     let (figure, name) = match &options.history {
         Some(what) => {
-            let path = options.results.join("history.csv");
-            let table = read_table(&path).map_err(CliError::Picture)?;
-            history::figure(&case, &table, what)?
+            let tables = options
+                .results
+                .iter()
+                .map(|folder| read_table(&folder.join("history.csv")).map_err(CliError::Picture))
+                .collect::<Result<Vec<_>, _>>()?;
+            let runs: Vec<Told<'_>> = (0..cases.len())
+                .map(|run| Told {
+                    case: &cases[run],
+                    table: &tables[run],
+                    label: &labels[run],
+                })
+                .collect();
+            curves::figure(&runs, what)?
         }
         None => {
-            let field = options.field.as_deref().unwrap_or(FIELD);
-            let chosen = frames::choose(&options.results, &options.times)?;
-            let names: Vec<String> = chosen.iter().map(|frame| frame.name()).collect();
-            let look = &options.look;
-            let figure = body::figure(&case, &chosen, field, look)?;
+            let chosen = options
+                .results
+                .iter()
+                .map(|folder| frames::choose(folder, &options.times))
+                .collect::<Result<Vec<_>, _>>()?;
+            let names: Vec<String> = chosen[0].iter().map(|frame| frame.name()).collect();
+            let runs: Vec<Drawn<'_>> = (0..cases.len())
+                .map(|run| Drawn {
+                    case: &cases[run],
+                    chosen: &chosen[run],
+                    label: &labels[run],
+                })
+                .collect();
+            let figure = body::figure(&runs, field, &options.look)?;
             (figure, format!("{field}-{}.png", names.join("-")))
         }
     };
     let path = options
         .output
         .clone()
-        .unwrap_or_else(|| options.results.join(name));
+        .unwrap_or_else(|| options.results[0].join(name));
     save(&figure, &path)?;
     console.print(format_args!("wrote {}\n", path.display()));
     Ok(0)
 }
 
+/// Names of runs by which they can be told apart; none for a single one.
+fn labels(folders: &[PathBuf]) -> Vec<String> {
+    if folders.len() == 1 {
+        return vec![String::new()];
+    }
+    let last = |folder: &PathBuf| {
+        folder.file_name().map_or_else(
+            || folder.display().to_string(),
+            |name| name.to_string_lossy().into_owned(),
+        )
+    };
+    let short: Vec<String> = folders.iter().map(last).collect();
+    let is_clear = (1..short.len()).all(|at| !short[..at].contains(&short[at]));
+    if is_clear {
+        return short;
+    }
+    folders
+        .iter()
+        .map(|folder| folder.display().to_string())
+        .collect()
+}
+
+fn read_case(results: &Path) -> Result<Case, CliError> {
+    let case = results.join("case.toml");
+    if !case.is_file() {
+        return Err(CliError::NoResults {
+            path: results.to_path_buf(),
+        });
+    }
+    Ok(jstsph_case::load(&case, &[])?)
+}
+
 /// Draws the last frame and the energies of a run that has just ended.
 pub(crate) fn after_run(case: &Case, results: &Path) -> Result<Vec<PathBuf>, CliError> {
     let mut written = Vec::new();
-    let chosen = frames::choose(results, &[])?;
-    let body = body::figure(case, &chosen, FIELD, &Look::default())?;
-    let table = read_table(&results.join("history.csv")).map_err(CliError::Picture)?;
-    let (energies, _) = history::figure(case, &table, "energies")?;
+    let body = one_body(case, results, FIELD, &[], &Look::default())?;
+    let energies = one_history(case, results, "energies")?;
     for (figure, name) in [(body, "final.png"), (energies, "energies.png")] {
         let path = results.join(name);
         save(&figure, &path)?;
         written.push(path);
     }
     Ok(written)
+}
+
+fn one_body(
+    case: &Case,
+    results: &Path,
+    field: &str,
+    times: &[String],
+    look: &Look,
+) -> Result<Figure, CliError> {
+    let chosen = frames::choose(results, times)?;
+    let drawn = Drawn {
+        case,
+        chosen: &chosen,
+        label: "",
+    };
+    body::figure(&[drawn], field, look)
+}
+
+fn one_history(case: &Case, results: &Path, what: &str) -> Result<Figure, CliError> {
+    let table = read_table(&results.join("history.csv")).map_err(CliError::Picture)?;
+    let told = Told {
+        case,
+        table: &table,
+        label: "",
+    };
+    curves::figure(&[told], what).map(|(figure, _)| figure)
 }
 
 /// Draws the set-up of a case.
@@ -85,16 +181,14 @@ pub(crate) fn draw_body(
     look: &Look,
     path: &Path,
 ) -> Result<(), CliError> {
-    let case = jstsph_case::load(&results.join("case.toml"), &[])?;
-    let chosen = frames::choose(results, times)?;
-    save(&body::figure(&case, &chosen, field, look)?, path)
+    let case = read_case(results)?;
+    save(&one_body(&case, results, field, times, look)?, path)
 }
 
 /// Draws curves of `history.csv` into a file; `what` as in `--history`.
 pub(crate) fn draw_history(results: &Path, what: &str, path: &Path) -> Result<(), CliError> {
-    let case = jstsph_case::load(&results.join("case.toml"), &[])?;
-    let table = read_table(&results.join("history.csv")).map_err(CliError::Picture)?;
-    save(&history::figure(&case, &table, what)?.0, path)
+    let case = read_case(results)?;
+    save(&one_history(&case, results, what)?, path)
 }
 
 /// How a picture is written.
@@ -109,6 +203,16 @@ fn format(path: &Path) -> Result<Format, CliError> {
         Some("png") => Ok(Format::Png),
         Some("svg") => Ok(Format::Svg),
         _ => Err(CliError::PictureFormat {
+            path: path.to_path_buf(),
+        }),
+    }
+}
+
+fn movie(path: &Path) -> Result<Movie, CliError> {
+    match path.extension().and_then(|extension| extension.to_str()) {
+        Some("gif") => Ok(Movie::Gif),
+        Some("png" | "apng") => Ok(Movie::Apng),
+        _ => Err(CliError::MovieFormat {
             path: path.to_path_buf(),
         }),
     }
