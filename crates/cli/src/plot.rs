@@ -24,6 +24,9 @@ use curves::Told;
 /// The field of the picture at the end of a run.
 const FIELD: &str = "equivalent_plastic_strain";
 
+/// Characters of a run's name over a panel.
+const LONGEST_LABEL: usize = 26;
+
 /// Draws one picture of a results folder, or of several to compare.
 pub(crate) fn run(options: &PlotOptions, console: &mut Console<'_>) -> Result<u8, CliError> {
     if let Some(path) = &options.output {
@@ -109,13 +112,52 @@ fn labels(folders: &[PathBuf]) -> Vec<String> {
     };
     let short: Vec<String> = folders.iter().map(last).collect();
     let is_clear = (1..short.len()).all(|at| !short[..at].contains(&short[at]));
-    if is_clear {
-        return short;
-    }
-    folders
+    let names = if is_clear {
+        differences(&short)
+    } else {
+        folders
+            .iter()
+            .map(|folder| folder.display().to_string())
+            .collect()
+    };
+    names.iter().map(|name| shortened(name)).collect()
+}
+
+/// Folders of a sweep are called KEY=VALUE,KEY=VALUE: what is the same in all of them goes.
+fn differences(names: &[String]) -> Vec<String> {
+    let split: Vec<Vec<&str>> = names.iter().map(|name| name.split(',').collect()).collect();
+    let first = &split[0];
+    let is_sweep = split
         .iter()
-        .map(|folder| folder.display().to_string())
+        .all(|parts| parts.len() == first.len() && parts.iter().all(|part| part.contains('=')));
+    if !is_sweep {
+        return names.to_vec();
+    }
+    let key = |part: &str| part.split_once('=').map(|(key, _)| key.to_owned());
+    let same_key =
+        (0..first.len()).all(|at| split.iter().all(|parts| key(parts[at]) == key(first[at])));
+    split
+        .iter()
+        .map(|parts| {
+            let differing = (0..parts.len())
+                .filter(|at| split.iter().any(|other| other[*at] != parts[*at]))
+                .map(|at| match parts[at].split_once('=') {
+                    Some((_, value)) if same_key => value,
+                    _ => parts[at],
+                });
+            differing.collect::<Vec<_>>().join(", ")
+        })
         .collect()
+}
+
+/// At most so long that it fits over a panel; the end of a name tells more than its beginning.
+fn shortened(name: &str) -> String {
+    let count = name.chars().count();
+    if count <= LONGEST_LABEL {
+        return name.to_owned();
+    }
+    let kept: String = name.chars().skip(count - LONGEST_LABEL + 1).collect();
+    format!("…{kept}")
 }
 
 fn read_case(results: &Path) -> Result<Case, CliError> {
@@ -261,6 +303,21 @@ fn moment(time: f64) -> (String, &'static str) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn runs_of_a_sweep_are_called_by_what_differs() {
+        let folders = |names: [&str; 2]| names.map(PathBuf::from);
+        assert_eq!(
+            labels(&folders(["s/n=3,cfl=0.9", "s/n=2,cfl=0.9"])),
+            ["3", "2"]
+        );
+        assert_eq!(labels(&folders(["a/x", "b/x"])), ["a/x", "b/x"]);
+        assert_eq!(labels(&folders(["a/x", "a/y"])), ["x", "y"]);
+        let long = "a-name-that-is-longer-than-a-panel";
+        let label = &labels(&folders([long, "x"]))[0];
+        assert!(label.starts_with('…') && label.ends_with("longer-than-a-panel"));
+        assert_eq!(label.chars().count(), LONGEST_LABEL);
+    }
 
     #[test]
     fn moments_are_short_and_keep_three_digits() {

@@ -11,6 +11,7 @@ mod cells;
 mod clip;
 mod colorbar;
 mod colormap;
+mod extent;
 mod groups;
 mod hidden;
 mod legend;

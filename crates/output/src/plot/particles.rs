@@ -4,6 +4,7 @@ use jstsph_tensor::Vec3;
 
 use super::canvas::{Canvas, INK, PAPER, Stroke, mix};
 use super::colorbar::ColourBar;
+use super::extent::Extent;
 use super::hidden::visible;
 use super::panels::{Panel, Panels};
 use super::{ColourMap, Group, Quantity, Section, View, Wall, cells, walls};
@@ -313,39 +314,6 @@ fn window(plots: &[ParticlePlot], dots: &[Vec<Dot>]) -> ([[f64; 2]; 2], bool) {
         ],
         is_near,
     )
-}
-
-/// The smallest upright rectangle about some points.
-struct Extent {
-    lower: [f64; 2],
-    upper: [f64; 2],
-}
-
-impl Default for Extent {
-    fn default() -> Self {
-        Self {
-            lower: [f64::MAX; 2],
-            upper: [f64::MIN; 2],
-        }
-    }
-}
-
-impl Extent {
-    fn add(&mut self, point: [f64; 2]) {
-        for (i, coordinate) in point.into_iter().enumerate() {
-            self.lower[i] = self.lower[i].min(coordinate);
-            self.upper[i] = self.upper[i].max(coordinate);
-        }
-    }
-
-    fn size(&self) -> [f64; 2] {
-        std::array::from_fn(|i| self.upper[i] - self.lower[i])
-    }
-
-    /// With a border of half a spacing, so that a single line of particles has an area.
-    fn area(&self, spacing: f64) -> f64 {
-        self.size().iter().map(|size| size + spacing).product()
-    }
 }
 
 #[cfg(test)]
