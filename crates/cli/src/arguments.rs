@@ -137,9 +137,9 @@ pub(crate) struct CheckOptions {
 /// Options of `plot`.
 #[derive(Debug, Args)]
 pub(crate) struct PlotOptions {
-    /// Folder with the results of a run
-    #[arg(value_name = "OUT_DIR")]
-    pub(crate) results: PathBuf,
+    /// Folder with the results of a run; several are drawn side by side, or as curves in one diagram
+    #[arg(value_name = "OUT_DIR", required = true)]
+    pub(crate) results: Vec<PathBuf>,
     /// Field, component (velocity_y, cauchy_stress_xy) or magnitude (velocity) to colour the body by [default: equivalent_plastic_strain]
     #[arg(long, value_name = "NAME")]
     pub(crate) field: Option<String>,
@@ -151,6 +151,9 @@ pub(crate) struct PlotOptions {
     /// Draw curves over time instead: energies, balance, time_step, probes, or columns of history.csv separated by commas
     #[arg(long, value_name = "WHAT", conflicts_with_all = ["field", "times", "range", "view", "section"])]
     pub(crate) history: Option<String>,
+    /// Write every frame of one run to an animation, .gif or .png (APNG)
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["history", "times", "output"])]
+    pub(crate) animate: Option<PathBuf>,
     /// File to write, .png or .svg [default: OUT_DIR/NAME-TIME.png]
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,

@@ -56,6 +56,18 @@ pub(crate) enum CliError {
         /// File asked for.
         path: PathBuf,
     },
+    /// An animation of a format that we do not write.
+    #[error("cannot draw {}: the name of an animation ends with .gif, .png or .apng", path.display())]
+    MovieFormat {
+        /// File asked for.
+        path: PathBuf,
+    },
+    /// An animation of several runs.
+    #[error("--animate shows one run, but {count} folders are given; animate them one by one")]
+    MovieRuns {
+        /// Number of folders.
+        count: usize,
+    },
     /// A folder that no run has written.
     #[error("{} is not a folder of results: it has no case.toml; give the folder of a run", path.display())]
     NoResults {

@@ -203,3 +203,68 @@ fn mistakes_are_told_with_what_is_allowed_and_draw_nothing() {
     let left = std::fs::read_dir(folder).expect("a folder").count();
     assert_eq!(left, 2, "the case and the results");
 }
+
+#[test]
+fn runs_are_compared_side_by_side_and_in_one_diagram() {
+    let (place, _) = run("--quiet --no-pictures");
+    let outcome =
+        place.jstsph("jstsph run @/block.toml --out @/s --set time.cfl=0.3 --quiet --no-pictures");
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    let outcome = place.jstsph("jstsph plot @/r @/s --time first,last -o @/both.svg");
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    let svg = place.text("both.svg");
+    for title in ["r, t = 0 s", "r, t = 20 µs", "s, t = 0 s", "s, t = 20 µs"] {
+        assert!(svg.contains(title), "{title}");
+    }
+    let outcome = place.jstsph("jstsph plot @/r @/s --history length,dt -o @/length.svg");
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    let svg = place.text("length.svg");
+    for label in ["r: length", "s: length", "r: dt", "s: dt"] {
+        assert!(svg.contains(label), "{label}");
+    }
+    let outcome = place.jstsph("jstsph plot @/r @/s --animate @/a.gif");
+    assert_eq!(outcome.code, 2);
+    assert!(
+        outcome.err.contains("2 folders are given"),
+        "{}",
+        outcome.err
+    );
+}
+
+#[test]
+fn animations_hold_every_frame() {
+    let (place, _) = run("--quiet --no-pictures");
+    let frames = std::fs::read_dir(place.path("r/frames")).expect("frames");
+    let frames = frames
+        .filter(|entry| {
+            let path = entry.as_ref().expect("readable").path();
+            path.extension().is_some_and(|extension| extension == "vtu")
+        })
+        .count();
+    let outcome = place.jstsph("jstsph plot @/r --animate @/a.gif --field velocity_y --view xy");
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    let gif = place.bytes("a.gif");
+    assert!(gif.starts_with(b"GIF89a"));
+    // Each picture has a graphic control extension of four bytes.
+    let pictures = gif
+        .windows(3)
+        .filter(|bytes| *bytes == [0x21, 0xf9, 4])
+        .count();
+    assert_eq!(pictures, frames);
+    let outcome = place.jstsph("jstsph plot @/r --animate @/a.png");
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    let png = place.bytes("a.png");
+    let at = png
+        .windows(4)
+        .position(|bytes| bytes == b"acTL")
+        .expect("animated");
+    let number = png[at + 4..at + 8].try_into().expect("4 bytes");
+    assert_eq!(u32::from_be_bytes(number) as usize, frames);
+    let outcome = place.jstsph("jstsph plot @/r --animate @/a.mp4");
+    assert_eq!(outcome.code, 2);
+    assert!(
+        outcome.err.contains(".gif, .png or .apng"),
+        "{}",
+        outcome.err
+    );
+}

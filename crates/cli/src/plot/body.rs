@@ -3,7 +3,8 @@
 use jstsph_case::Case;
 use jstsph_case::units::Measure;
 use jstsph_geometry::{Axis, Cells, Dimension, Shape};
-use jstsph_output::plot::{Figure, ParticlePlot, View};
+use jstsph_output::OutputError;
+use jstsph_output::plot::{Animation, Figure, ParticlePlot, View, Wall};
 use jstsph_tensor::Vec3;
 
 use super::frames::Chosen;
@@ -83,33 +84,97 @@ struct Shown {
     cells: Vec<[usize; 4]>,
 }
 
-/// Draws the chosen frames side by side.
-pub(super) fn figure(
-    case: &Case,
-    chosen: &[Chosen],
+/// Frames of a run to draw.
+pub(super) struct Drawn<'a> {
+    pub(super) case: &'a Case,
+    pub(super) chosen: &'a [Chosen],
+    /// Name of the run in titles; empty when there is only one.
+    pub(super) label: &'a str,
+}
+
+/// A body with what is around it at one time.
+struct Picture {
+    title: String,
+    positions: Vec<Vec3>,
+    values: Vec<f64>,
+    cells: Vec<[usize; 4]>,
+    walls: Vec<Wall>,
+    undeformed: Vec<Vec<Vec3>>,
+    spacing: f64,
+}
+
+/// Draws the chosen frames of one run or several side by side.
+pub(super) fn figure(runs: &[Drawn<'_>], name: &str, look: &Look) -> Result<Figure, CliError> {
+    with_plots(runs, name, look, |heading, plots| {
+        Figure::panels(heading, plots)
+    })
+}
+
+/// Draws the chosen frames of a run one after the other.
+pub(super) fn animation(run: Drawn<'_>, name: &str, look: &Look) -> Result<Animation, CliError> {
+    with_plots(&[run], name, look, |heading, plots| {
+        Animation::new(heading, plots)
+    })
+}
+
+fn with_plots<T>(
+    runs: &[Drawn<'_>],
     name: &str,
     look: &Look,
-) -> Result<Figure, CliError> {
+    draw: impl FnOnce(&str, &[ParticlePlot]) -> Result<T, OutputError>,
+) -> Result<T, CliError> {
+    let case = runs[0].case;
     let sight = Sight::new(case, look);
-    let reference: Vec<Vec3> = case
-        .model
-        .bodies
+    let mut pictures = Vec::new();
+    for run in runs {
+        pictures.extend(self::pictures(run, sight, name)?);
+    }
+    let quantity = field::quantity(&runs[0].chosen[0].frame, name);
+    let values = pictures.iter().flat_map(|picture| &picture.values);
+    let (colours, range) = field::colours(values.copied());
+    let range = match &look.range {
+        Some(range) => Some(range.values(name, &quantity.unit)?),
+        None => range,
+    };
+    let plots: Vec<ParticlePlot> = pictures
+        .iter()
+        .map(|picture| ParticlePlot {
+            title: picture.title.clone(),
+            view: sight.view(case),
+            cells: &picture.cells,
+            walls: picture.walls.clone(),
+            undeformed: picture.undeformed.clone(),
+            colours,
+            range,
+            ..ParticlePlot::new(
+                &picture.positions,
+                &picture.values,
+                quantity.name.clone(),
+                quantity.unit.clone(),
+                picture.spacing,
+            )
+        })
+        .collect();
+    let is_one = runs.iter().all(|run| heading(run.case) == heading(case));
+    draw(if is_one { heading(case) } else { "" }, &plots).map_err(CliError::Picture)
+}
+
+fn pictures(run: &Drawn<'_>, sight: Sight, name: &str) -> Result<Vec<Picture>, CliError> {
+    let case = run.case;
+    let bodies = &case.model.bodies;
+    let reference: Vec<Vec3> = bodies
         .iter()
         .flat_map(|body| body.body.positions.iter().copied())
         .collect();
-    let spacing = case
-        .model
-        .bodies
-        .iter()
-        .map(|body| body.body.spacing)
-        .fold(f64::INFINITY, f64::min);
+    let spacings = bodies.iter().map(|body| body.body.spacing);
+    let spacing = spacings.fold(f64::INFINITY, f64::min);
     let (low, high) = box_of(reference.iter());
     let middle = 0.5 * (low + high);
     let shown = select(case, &reference, sight, &middle, spacing);
 
-    let mut positions = Vec::with_capacity(chosen.len());
-    let mut values = Vec::with_capacity(chosen.len());
-    for Chosen { frame } in chosen {
+    let mut pictures = Vec::with_capacity(run.chosen.len());
+    for chosen in run.chosen {
+        let frame = &chosen.frame;
         if frame.positions.len() != reference.len() {
             return Err(CliError::ForeignFrame {
                 found: frame.positions.len(),
@@ -117,43 +182,34 @@ pub(super) fn figure(
             });
         }
         let all = field::values(frame, name)?;
-        values.push(shown.particles.iter().map(|&a| all[a]).collect::<Vec<_>>());
-        let picked = shown.particles.iter().map(|&a| frame.positions[a]);
-        positions.push(picked.collect::<Vec<Vec3>>());
-    }
-    let quantity = field::quantity(&chosen[0].frame, name);
-    let (colours, range) = field::colours(values.iter().flatten().copied());
-    let range = match &look.range {
-        Some(range) => Some(range.values(name, &quantity.unit)?),
-        None => range,
-    };
-    let corners = box_of(positions.iter().flatten());
-    let plots: Vec<ParticlePlot> = chosen
-        .iter()
-        .zip(&positions)
-        .zip(&values)
-        .map(|((chosen, positions), values)| ParticlePlot {
-            title: chosen.title(),
-            view: sight.view(case),
-            cells: &shown.cells,
-            walls: lines::walls(case, sight, &middle, corners, chosen.frame.time),
-            undeformed: if chosen.frame.time > 0.0 {
-                lines::undeformed(case, sight)
-            } else {
-                Vec::new()
+        let is_first = frame.time <= 0.0;
+        pictures.push(Picture {
+            title: match run.label {
+                "" => chosen.title(),
+                label => format!("{label}, {}", chosen.title()),
             },
-            colours,
-            range,
-            ..ParticlePlot::new(
-                positions,
-                values,
-                quantity.name.clone(),
-                quantity.unit.clone(),
-                spacing,
-            )
-        })
-        .collect();
-    Figure::panels(heading(case), &plots).map_err(CliError::Picture)
+            positions: shown
+                .particles
+                .iter()
+                .map(|&a| frame.positions[a])
+                .collect(),
+            values: shown.particles.iter().map(|&a| all[a]).collect(),
+            cells: shown.cells.clone(),
+            walls: Vec::new(),
+            undeformed: if is_first {
+                Vec::new()
+            } else {
+                lines::undeformed(case, sight)
+            },
+            spacing,
+        });
+    }
+    // Obstacles reach around the body in all pictures.
+    let corners = box_of(pictures.iter().flat_map(|picture| &picture.positions));
+    for (picture, chosen) in pictures.iter_mut().zip(run.chosen) {
+        picture.walls = lines::walls(case, sight, &middle, corners, chosen.frame.time);
+    }
+    Ok(pictures)
 }
 
 fn select(case: &Case, reference: &[Vec3], sight: Sight, middle: &Vec3, spacing: f64) -> Shown {

@@ -51,6 +51,22 @@ pub(super) fn choose(results: &Path, times: &[String]) -> Result<Vec<Chosen>, Cl
     Ok(chosen)
 }
 
+/// Reads every frame.
+pub(super) fn all(results: &Path) -> Result<Vec<Chosen>, CliError> {
+    let folder = results.join("frames");
+    let collection = Collection::read(&folder.join("frames.pvd")).map_err(CliError::Picture)?;
+    let read = |file: &_| read_vtu(&folder.join(file)).map_err(CliError::Picture);
+    let frames = collection.entries().iter().map(|(_, file)| read(file));
+    let chosen = frames.map(|frame| frame.map(|frame| Chosen { frame }));
+    let chosen = chosen.collect::<Result<Vec<_>, _>>()?;
+    if chosen.is_empty() {
+        return Err(CliError::NoFrames {
+            path: results.to_path_buf(),
+        });
+    }
+    Ok(chosen)
+}
+
 /// Index of the frame that a text such as `40 ms`, `0.04`, `first` or `last` means.
 fn nearest(text: &str, stored: &[f64]) -> Result<usize, CliError> {
     let (first, last) = (stored[0], stored[stored.len() - 1]);

@@ -2,7 +2,7 @@
 
 use jstsph_case::Case;
 use jstsph_geometry::Dimension;
-use jstsph_output::plot::{Figure, LinePlot, Quantity, Series, SeriesStyle};
+use jstsph_output::plot::{LinePlot, Quantity, Series, SeriesStyle};
 use jstsph_output::{HISTORY_COLUMNS, OutputError, Table};
 use jstsph_solver::{Field, ProbeKind, Simulation};
 use jstsph_tensor::Vec3;
@@ -15,28 +15,6 @@ const SETS: [&str; 4] = ["energies", "balance", "time_step", "probes"];
 
 /// Part of the largest energy from which a kind of energy is worth a curve.
 const VISIBLE: f64 = 1e-4;
-
-/// Draws a named set of columns, or columns by name separated by commas. Also gives the name of
-/// the file.
-pub(super) fn figure(case: &Case, table: &Table, what: &str) -> Result<(Figure, String), CliError> {
-    let history = History { case, table };
-    let plots = match what.trim() {
-        "energies" => vec![history.energies()?],
-        "balance" => vec![history.balance()?],
-        "time_step" => vec![history.time_step()?],
-        "probes" => history.probes()?,
-        columns => {
-            let names: Vec<&str> = columns.split(',').map(str::trim).collect();
-            for name in &names {
-                history.known(name)?;
-            }
-            history.by_unit(&names)?
-        }
-    };
-    let figure = Figure::stack(heading(case), &plots).map_err(CliError::Picture)?;
-    let name = what.trim().replace([',', ' '], "-");
-    Ok((figure, format!("{name}.png")))
-}
 
 /// The table of a run with what the case says about its columns.
 pub(crate) struct History<'a> {
@@ -230,7 +208,7 @@ impl History<'_> {
         })
     }
 
-    fn known(&self, name: &str) -> Result<(), CliError> {
+    pub(super) fn known(&self, name: &str) -> Result<(), CliError> {
         if self.table.columns.iter().any(|column| column == name) {
             return Ok(());
         }
@@ -386,6 +364,15 @@ line = { from = [0, 0.003], to = [0.004, 0.003], count = 3, field = "pressure" }
         }
     }
 
+    fn drawn(what: &str) -> Result<(), CliError> {
+        let told = crate::plot::curves::Told {
+            case: &case(),
+            table: &table(),
+            label: "",
+        };
+        crate::plot::curves::figure(&[told], what).map(|_| ())
+    }
+
     #[test]
     fn energies_are_per_thickness_and_compared_with_what_was_supplied() {
         let (case, table) = (case(), table());
@@ -454,9 +441,7 @@ line = { from = [0, 0.003], to = [0.004, 0.003], count = 3, field = "pressure" }
 
     #[test]
     fn unknown_columns_are_refused_with_all_names() {
-        let message = figure(&case(), &table(), "dt,kinetic")
-            .unwrap_err()
-            .to_string();
+        let message = drawn("dt,kinetic").unwrap_err().to_string();
         assert!(
             message.starts_with("unknown set or column of history.csv `kinetic`"),
             "{message}"
@@ -468,6 +453,6 @@ line = { from = [0, 0.003], to = [0.004, 0.003], count = 3, field = "pressure" }
         ] {
             assert!(message.contains(name), "{message}");
         }
-        assert!(figure(&case(), &table(), "dt, force_die_y").is_ok());
+        assert!(drawn("dt, force_die_y").is_ok());
     }
 }

@@ -4,12 +4,14 @@
 //! lay out a list of shapes once; the two file formats render the same list, so that they agree.
 //! Text in PNG files is drawn with DejaVu Sans, which is compiled in.
 
+mod animation;
 mod axis;
 mod canvas;
 mod cells;
 mod clip;
 mod colorbar;
 mod colormap;
+mod extent;
 mod groups;
 mod hidden;
 mod legend;
@@ -28,6 +30,7 @@ use std::path::Path;
 use crate::{OutputError, atomic_write};
 use canvas::Canvas;
 
+pub use animation::{Animation, Movie};
 pub use axis::Scale;
 pub use colormap::ColourMap;
 pub use groups::Group;

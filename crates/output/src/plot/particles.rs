@@ -4,6 +4,7 @@ use jstsph_tensor::Vec3;
 
 use super::canvas::{Canvas, INK, PAPER, Stroke, mix};
 use super::colorbar::ColourBar;
+use super::extent::Extent;
 use super::hidden::visible;
 use super::panels::{Panel, Panels};
 use super::{ColourMap, Group, Quantity, Section, View, Wall, cells, walls};
@@ -112,6 +113,7 @@ impl<'a> ParticlePlot<'a> {
 }
 
 /// A particle in the plane of view.
+#[derive(Clone, Copy)]
 struct Dot {
     particle: usize,
     place: [f64; 2],
@@ -120,62 +122,97 @@ struct Dot {
 
 /// Draws plots side by side, with a common scale, window and colour bar.
 pub(crate) fn draw(heading: &str, plots: &[ParticlePlot]) -> Result<Canvas, OutputError> {
-    let nothing = |title: &str, reason| OutputError::NothingToDraw {
-        title: title.to_owned(),
-        reason,
-    };
-    let first = plots
-        .first()
-        .ok_or_else(|| nothing(heading, "no plot was given"))?;
-    let mut dots = Vec::with_capacity(plots.len());
-    for plot in plots {
-        plot.check()?;
-        let shown: Vec<Dot> = (0..plot.positions.len())
-            .filter(|&particle| plot.is_shown(particle))
-            .map(|particle| Dot {
-                particle,
-                place: plot.project(&plot.positions[particle]),
-                depth: plot.depth(&plot.positions[particle]),
-            })
-            .collect();
-        if shown.is_empty() {
-            return Err(nothing(&plot.title, "no particle lies in the section"));
+    Common::new(heading, plots).map(|common| common.draw(heading, plots, &common.dots))
+}
+
+/// Draws plots one by one, with the scale, window and colour bar that they have in common.
+pub(crate) fn sequence(heading: &str, plots: &[ParticlePlot]) -> Result<Vec<Canvas>, OutputError> {
+    let common = Common::new(heading, plots)?;
+    let each = plots.iter().zip(&common.dots);
+    Ok(each
+        .map(|(plot, dots)| {
+            let (plot, dots) = (std::slice::from_ref(plot), std::slice::from_ref(dots));
+            common.draw(heading, plot, dots)
+        })
+        .collect())
+}
+
+/// What several plots have in common, and the particles that they show.
+struct Common {
+    dots: Vec<Vec<Dot>>,
+    window: [[f64; 2]; 2],
+    shows_undeformed: bool,
+    bar: ColourBar,
+}
+
+impl Common {
+    fn new(heading: &str, plots: &[ParticlePlot]) -> Result<Self, OutputError> {
+        let nothing = |title: &str, reason| OutputError::NothingToDraw {
+            title: title.to_owned(),
+            reason,
+        };
+        let first = plots
+            .first()
+            .ok_or_else(|| nothing(heading, "no plot was given"))?;
+        let mut dots = Vec::with_capacity(plots.len());
+        for plot in plots {
+            plot.check()?;
+            let shown: Vec<Dot> = (0..plot.positions.len())
+                .filter(|&particle| plot.is_shown(particle))
+                .map(|particle| Dot {
+                    particle,
+                    place: plot.project(&plot.positions[particle]),
+                    depth: plot.depth(&plot.positions[particle]),
+                })
+                .collect();
+            if shown.is_empty() {
+                return Err(nothing(&plot.title, "no particle lies in the section"));
+            }
+            dots.push(shown);
         }
-        dots.push(shown);
+        let (window, shows_undeformed) = window(plots, &dots);
+        let values = plots
+            .iter()
+            .zip(&dots)
+            .flat_map(|(plot, dots)| dots.iter().map(|dot| plot.values[dot.particle]));
+        let bar = ColourBar::new(first, values);
+        Ok(Self {
+            dots,
+            window,
+            shows_undeformed,
+            bar,
+        })
     }
-    let (window, shows_undeformed) = window(plots, &dots);
-    let values = plots
-        .iter()
-        .zip(&dots)
-        .flat_map(|(plot, dots)| dots.iter().map(|dot| plot.values[dot.particle]));
-    let bar = ColourBar::new(first, values);
-    let titles: Vec<&str> = plots.iter().map(|plot| plot.title.as_str()).collect();
-    let panels = Panels::new(heading, &titles, first.view, window, &bar);
-    let mut canvas = Canvas::new(panels.size[0], panels.size[1]);
-    for (number, (plot, dots)) in plots.iter().zip(dots).enumerate() {
-        let panel = panels.panel(number);
-        let is_flat = plot.view.plane().is_some();
-        if !is_flat {
-            walls::draw(&mut canvas, plot, &panel);
-        }
-        let cells = draw_body(&mut canvas, plot, dots, &panel, &bar);
-        if shows_undeformed {
-            for line in &plot.undeformed {
-                walls::draw_line(&mut canvas, plot, line, &panel, UNDEFORMED);
+
+    fn draw(&self, heading: &str, plots: &[ParticlePlot], dots: &[Vec<Dot>]) -> Canvas {
+        let titles: Vec<&str> = plots.iter().map(|plot| plot.title.as_str()).collect();
+        let panels = Panels::new(heading, &titles, plots[0].view, self.window, &self.bar);
+        let mut canvas = Canvas::new(panels.size[0], panels.size[1]);
+        for (number, (plot, dots)) in plots.iter().zip(dots).enumerate() {
+            let panel = panels.panel(number);
+            let is_flat = plot.view.plane().is_some();
+            if !is_flat {
+                walls::draw(&mut canvas, plot, &panel);
+            }
+            let cells = draw_body(&mut canvas, plot, dots.clone(), &panel, &self.bar);
+            if self.shows_undeformed {
+                for line in &plot.undeformed {
+                    walls::draw_line(&mut canvas, plot, line, &panel, UNDEFORMED);
+                }
+            }
+            if is_flat {
+                // Above the undeformed body, which often has edges in common with both.
+                for line in cells::outline(&cells) {
+                    let line: Vec<Vec3> = line.iter().map(|&a| plot.positions[a]).collect();
+                    walls::draw_line(&mut canvas, plot, &line, &panel, Stroke::solid(INK, 1.0));
+                }
+                walls::draw(&mut canvas, plot, &panel);
             }
         }
-        if is_flat {
-            // Above the undeformed body, which often has edges in common with both.
-            for line in cells::outline(&cells) {
-                let line: Vec<Vec3> = line.iter().map(|&a| plot.positions[a]).collect();
-                walls::draw_line(&mut canvas, plot, &line, &panel, Stroke::solid(INK, 1.0));
-            }
-            walls::draw(&mut canvas, plot, &panel);
-        }
+        panels.draw(&mut canvas);
+        self.bar.draw(&mut canvas, &panels.last_frame());
+        canvas
     }
-    panels.draw(&mut canvas);
-    bar.draw(&mut canvas, &panels.last_frame());
-    Ok(canvas)
 }
 
 const UNDEFORMED: Stroke = Stroke {
@@ -277,39 +314,6 @@ fn window(plots: &[ParticlePlot], dots: &[Vec<Dot>]) -> ([[f64; 2]; 2], bool) {
         ],
         is_near,
     )
-}
-
-/// The smallest upright rectangle about some points.
-struct Extent {
-    lower: [f64; 2],
-    upper: [f64; 2],
-}
-
-impl Default for Extent {
-    fn default() -> Self {
-        Self {
-            lower: [f64::MAX; 2],
-            upper: [f64::MIN; 2],
-        }
-    }
-}
-
-impl Extent {
-    fn add(&mut self, point: [f64; 2]) {
-        for (i, coordinate) in point.into_iter().enumerate() {
-            self.lower[i] = self.lower[i].min(coordinate);
-            self.upper[i] = self.upper[i].max(coordinate);
-        }
-    }
-
-    fn size(&self) -> [f64; 2] {
-        std::array::from_fn(|i| self.upper[i] - self.lower[i])
-    }
-
-    /// With a border of half a spacing, so that a single line of particles has an area.
-    fn area(&self, spacing: f64) -> f64 {
-        self.size().iter().map(|size| size + spacing).product()
-    }
 }
 
 #[cfg(test)]

@@ -11,28 +11,22 @@ use super::{MARK, text};
 
 /// Pixels per CSS pixel.
 const SCALE: f32 = 2.0;
+/// The same in animations, whose files are large enough.
+const MOVING_SCALE: f32 = 1.0;
 /// Pixels per metre: 96 CSS pixels per inch.
 const PIXELS_PER_METRE: u32 = (96.0 * SCALE / 0.0254) as u32;
 
+/// Pixels without transparency, three bytes each.
+pub(crate) struct Raster {
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    pub(crate) rgb: Vec<u8>,
+}
+
 /// Renders the shapes and encodes them.
 pub(crate) fn png(canvas: &Canvas) -> io::Result<Vec<u8>> {
-    let width = (canvas.width as f32 * SCALE) as u32;
-    let height = (canvas.height as f32 * SCALE) as u32;
-    let mut pixels = Pixmap::new(width, height)
-        .ok_or_else(|| io::Error::other(format!("a picture of {width} x {height} pixels")))?;
-    pixels.fill(tiny_skia::Color::from_rgba8(
-        PAPER[0], PAPER[1], PAPER[2], 255,
-    ));
-    for shape in &canvas.shapes {
-        draw(&mut pixels, shape);
-    }
-
-    // The background is opaque everywhere, so that the alpha channel tells nothing.
-    let rgb: Vec<u8> = pixels
-        .data()
-        .chunks_exact(4)
-        .flat_map(|pixel| [pixel[0], pixel[1], pixel[2]])
-        .collect();
+    let size = [canvas.width, canvas.height];
+    let Raster { width, height, rgb } = render(canvas, size, SCALE)?;
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);
@@ -49,13 +43,37 @@ pub(crate) fn png(canvas: &Canvas) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn draw(pixels: &mut Pixmap, shape: &Shape) {
+/// Renders a picture of an animation on a page of the given size.
+pub(crate) fn moving(canvas: &Canvas, page: [f64; 2]) -> io::Result<Raster> {
+    render(canvas, page, MOVING_SCALE)
+}
+
+fn render(canvas: &Canvas, page: [f64; 2], scale: f32) -> io::Result<Raster> {
+    let [width, height] = page.map(|size| (size as f32 * scale) as u32);
+    let mut pixels = Pixmap::new(width, height)
+        .ok_or_else(|| io::Error::other(format!("a picture of {width} x {height} pixels")))?;
+    pixels.fill(tiny_skia::Color::from_rgba8(
+        PAPER[0], PAPER[1], PAPER[2], 255,
+    ));
+    for shape in &canvas.shapes {
+        draw(&mut pixels, shape, Transform::from_scale(scale, scale));
+    }
+    // The background is opaque everywhere, so that the alpha channel tells nothing.
+    let rgb = pixels
+        .data()
+        .chunks_exact(4)
+        .flat_map(|pixel| [pixel[0], pixel[1], pixel[2]])
+        .collect();
+    Ok(Raster { width, height, rgb })
+}
+
+fn draw(pixels: &mut Pixmap, shape: &Shape, scale: Transform) {
     match shape {
         Shape::Polygon {
             points,
             fill,
             outline,
-        } => draw_path(pixels, polygon(points, true), Some(*fill), *outline),
+        } => draw_path(pixels, polygon(points, true), Some(*fill), *outline, scale),
         Shape::Patch { points, fill } => {
             if let Some(path) = polygon(points, true) {
                 // Without anti-aliasing a pixel belongs to exactly one of two neighbours.
@@ -63,12 +81,11 @@ fn draw(pixels: &mut Pixmap, shape: &Shape) {
                     anti_alias: false,
                     ..paint(*fill)
                 };
-                let scale = Transform::from_scale(SCALE, SCALE);
                 pixels.fill_path(&path, &paint, FillRule::Winding, scale, None);
             }
         }
         Shape::Polyline { points, stroke } => {
-            draw_path(pixels, polygon(points, false), None, Some(*stroke));
+            draw_path(pixels, polygon(points, false), None, Some(*stroke), scale);
         }
         Shape::Circle {
             centre,
@@ -77,7 +94,7 @@ fn draw(pixels: &mut Pixmap, shape: &Shape) {
             outline,
         } => {
             let path = PathBuilder::from_circle(centre[0] as f32, centre[1] as f32, *radius as f32);
-            draw_path(pixels, path, Some(*fill), *outline);
+            draw_path(pixels, path, Some(*fill), *outline, scale);
         }
         Shape::Text {
             at,
@@ -97,7 +114,7 @@ fn draw(pixels: &mut Pixmap, shape: &Shape) {
                 .post_rotate(turn)
                 .post_translate(at[0] as f32, at[1] as f32);
             let path = text::outline(content, *size).and_then(|path| path.transform(place));
-            draw_path(pixels, path, Some(super::canvas::INK), None);
+            draw_path(pixels, path, Some(super::canvas::INK), None, scale);
         }
     }
 }
@@ -124,9 +141,9 @@ fn draw_path(
     path: Option<Path>,
     fill: Option<Colour>,
     outline: Option<Stroke>,
+    scale: Transform,
 ) {
     let Some(path) = path else { return };
-    let scale = Transform::from_scale(SCALE, SCALE);
     if let Some(colour) = fill {
         pixels.fill_path(&path, &paint(colour), FillRule::Winding, scale, None);
     }
