@@ -91,10 +91,7 @@ impl Writer {
             "additionalProperties": false,
         });
         let has = |name: &&str| keys.iter().any(|key| key.name == *name);
-        if let Some(set) = EXCLUSIVE
-            .iter()
-            .find(|set| set.iter().all(|name| has(name)))
-        {
+        if let Some(set) = EXCLUSIVE.iter().find(|set| set.iter().all(&has)) {
             table["oneOf"] = exactly_one(set);
         }
         table

@@ -304,8 +304,11 @@ impl Job<'_> {
         simulation
             .restore(&saved)
             .map_err(|error| foreign(error.to_string()))?;
-        if last.impulses.len() != self.case.model.obstacles.len() {
-            return Err(foreign("it has another number of obstacles".to_owned()));
+        let forces = simulation.obstacle_impulses().len() + simulation.condition_impulses().len();
+        if last.impulses.len() != forces {
+            return Err(foreign(
+                "it has another number of obstacles or prescribed velocities".to_owned(),
+            ));
         }
         Ok((folder, Some(last)))
     }

@@ -279,3 +279,24 @@ fn a_signal_ends_the_process_in_good_order() {
             .is_some()
     );
 }
+
+/// Forces of prescribed velocities are written beside those of obstacles, and continued with them.
+#[test]
+fn a_run_with_a_prescribed_velocity_can_be_continued() {
+    let place = Place::new();
+    let text = place.text("block.toml")
+        + "[[boundary]]\nwhere = \"block.top\"\nvelocity = { y = \"-150 m/s\" }\n";
+    place.write("pushed.toml", &text);
+    for (out, end) in [("whole", "6e-6"), ("parts", "4e-6")] {
+        let line = format!("jstsph run @/pushed.toml --out @/{out} --quiet --set time.end={end}");
+        assert_eq!(place.jstsph(&line).code, 0);
+    }
+    let longer =
+        place.jstsph("jstsph run @/pushed.toml --out @/parts --resume --set time.end=6e-6");
+    assert_eq!(longer.code, 0, "{}", longer.err);
+    let [whole, parts] = ["whole", "parts"].map(|name| summary(&place.path(name)));
+    assert_eq!(parts.simulated_time, whole.simulated_time);
+    // The shorter run ended with a shorter step than the whole one made there.
+    let (a, b) = (whole.energies.plastic, parts.energies.plastic);
+    assert!((a / b - 1.0).abs() < 1e-3, "{a} {b}");
+}
