@@ -61,8 +61,7 @@ pub(crate) fn run_case(
         let simulation =
             Simulation::new(case.model.clone()).map_err(|error| case.setup_error(&error))?;
         let mut warnings = case.warnings.clone();
-        let stability = Stability::new(case, &simulation);
-        warnings.extend(stability.and_then(|found| found.warning(case)));
+        warnings.extend(Stability::warning_before_run(case, &simulation));
         let job = Job {
             options,
             case,

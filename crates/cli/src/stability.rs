@@ -47,6 +47,14 @@ impl Stability {
         )
     }
 
+    /// The warning before a run; an impact, which never has one, does not pay for the limit.
+    pub(crate) fn warning_before_run(case: &Case, simulation: &Simulation) -> Option<String> {
+        if is_impact(case) {
+            return None;
+        }
+        Self::new(case, simulation)?.warning(case)
+    }
+
     /// A warning for cases that load slowly.
     pub(crate) fn warning(&self, case: &Case) -> Option<String> {
         (self.is_exceeded && !self.is_impact).then(|| {
