@@ -4,7 +4,9 @@
 //! A law never softens with strain: in a local continuum softening concentrates in one row of points, whatever
 //! their spacing, and the answer depends on the spacing. [`HardeningLaw::validate`] refuses it.
 
+use crate::return_map::{TileProblem, TileReturn, TileSolution};
 use crate::{Description, Key, ParameterError};
+use jstsph_tensor::lanes::{Lanes, Simd, TILE, vectorised};
 use std::fmt::Debug;
 
 /// The state on which a flow stress depends.
@@ -42,6 +44,16 @@ impl FlowStress {
     }
 }
 
+/// Flow stresses and slopes of several points, one per lane, for laws that depend on the plastic strain
+/// alone.
+#[derive(Clone, Copy, Debug)]
+pub struct FlowLanes<S: Simd> {
+    /// σ_Y, Pa.
+    pub value: Lanes<S>,
+    /// dσ_Y/dε_p, Pa.
+    pub slope: Lanes<S>,
+}
+
 /// Flow stress as a function of the equivalent plastic strain, its rate and the temperature.
 pub trait HardeningLaw: Clone + Debug + Send + Sync + 'static {
     /// Name in a case file.
@@ -65,6 +77,45 @@ pub trait HardeningLaw: Clone + Debug + Send + Sync + 'static {
     #[inline]
     fn flow_stress_near(&self, _start: &FlowStress, _from: f64, at: &FlowState) -> FlowStress {
         self.flow_stress(at)
+    }
+
+    /// Whether the law depends on the plastic strain alone and works on many points at once: with
+    /// [`flow_stress_tile`](Self::flow_stress_tile) and [`flow_stress_lanes`](Self::flow_stress_lanes).
+    const ON_LANES: bool = false;
+
+    /// σ_Y and its slope of a tile of plastic strains: the bits of [`flow_stress`](Self::flow_stress).
+    #[inline(always)]
+    fn flow_stress_tile<S: Simd>(
+        &self,
+        _simd: S,
+        plastic_strain: &[f64; TILE],
+        [value, slope]: [&mut [f64; TILE]; 2],
+    ) {
+        for i in 0..TILE {
+            let flow = self.flow_stress(&FlowState {
+                plastic_strain: plastic_strain[i],
+                rate: 0.0,
+                temperature: crate::ROOM_TEMPERATURE,
+            });
+            (value[i], slope[i]) = (flow.value, flow.slope);
+        }
+    }
+
+    /// The bits of [`flow_stress_near`](Self::flow_stress_near), or no number in lanes that this way
+    /// of working does not reach; no number at all from laws that do not work so.
+    #[inline(always)]
+    fn flow_stress_lanes<S: Simd>(
+        &self,
+        simd: S,
+        _start: &FlowLanes<S>,
+        _from: Lanes<S>,
+        _at: Lanes<S>,
+    ) -> FlowLanes<S> {
+        let none = Lanes::splat(simd, f64::NAN);
+        FlowLanes {
+            value: none,
+            slope: none,
+        }
     }
 
     /// Parameter sets on which the conformance tests run.
@@ -131,6 +182,18 @@ macro_rules! register_hardening_laws {
                 at: &FlowState,
             ) -> FlowStress {
                 match self { $(Self::$law(law) => law.flow_stress_near(start, from, at)),+ }
+            }
+
+            /// Solves the equations of radial return of a tile in the law's lanes; false if it has none.
+            #[inline]
+            pub(crate) fn solve_tile(&self, problem: &TileProblem, solution: &mut TileSolution) -> bool {
+                match self {
+                    $(Self::$law(law) if $law::ON_LANES => {
+                        vectorised(TileReturn { law, problem, solution });
+                        true
+                    })+
+                    _ => false,
+                }
             }
 
             /// Examples of every law.

@@ -3,6 +3,10 @@
 use crate::MaterialError;
 use crate::hardening::{FlowState, FlowStress};
 
+mod tile;
+
+pub(crate) use tile::{TileProblem, TileReturn, TileSolution};
+
 /// Accepted residual, relative to the trial stress: a few thousand units of round-off.
 const TOLERANCE: f64 = 1e-12;
 
@@ -27,6 +31,12 @@ pub(crate) struct RadialReturn {
 }
 
 impl RadialReturn {
+    /// 3 μ: what the equivalent stress loses per plastic strain.
+    #[inline(always)]
+    pub(crate) fn stiffness(shear_modulus: f64) -> f64 {
+        3.0 * shear_modulus
+    }
+
     /// Δε_p of radial return: the root D of
     ///
     /// ```text
@@ -55,7 +65,7 @@ impl RadialReturn {
             jacobian,
             ..
         } = self;
-        let stiffness = 3.0 * self.shear_modulus;
+        let stiffness = Self::stiffness(self.shear_modulus);
         let tolerance = TOLERANCE * trial_stress;
         let per_time = if self.dt > 0.0 { 1.0 / self.dt } else { 0.0 };
         let (mut low, mut high) = (0.0, trial_stress / stiffness);

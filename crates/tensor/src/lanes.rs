@@ -110,13 +110,39 @@ impl<S: Simd> Lanes<S> {
         self.simd.reduce_max_f64s(self.values)
     }
 
+    /// |x|.
+    #[inline(always)]
+    #[must_use]
+    pub fn abs(self) -> Self {
+        Self {
+            values: self.simd.abs_f64s(self.values),
+            ..self
+        }
+    }
+
     /// Lane by lane `if self < limit { yes } else { no }`; not a number is not less.
     #[inline(always)]
     #[must_use]
     pub fn if_less(self, limit: f64, yes: Self, no: Self) -> Self {
-        let mask = self
-            .simd
-            .less_than_f64s(self.values, self.simd.splat_f64s(limit));
+        self.if_below(Self::splat(self.simd, limit), yes, no)
+    }
+
+    /// Lane by lane `if self < limit { yes } else { no }`; not a number is not less.
+    #[inline(always)]
+    #[must_use]
+    pub fn if_below(self, limit: Self, yes: Self, no: Self) -> Self {
+        let mask = self.simd.less_than_f64s(self.values, limit.values);
+        Self {
+            values: self.simd.select_f64s(mask, yes.values, no.values),
+            ..self
+        }
+    }
+
+    /// Lane by lane `if self <= limit { yes } else { no }`; not a number is not at most anything.
+    #[inline(always)]
+    #[must_use]
+    pub fn if_at_most(self, limit: Self, yes: Self, no: Self) -> Self {
+        let mask = self.simd.less_than_or_equal_f64s(self.values, limit.values);
         Self {
             values: self.simd.select_f64s(mask, yes.values, no.values),
             ..self

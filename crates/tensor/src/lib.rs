@@ -18,6 +18,7 @@
 mod algebra;
 mod function;
 pub mod lanes;
+mod power;
 mod spectral;
 
 pub use algebra::{
@@ -25,6 +26,7 @@ pub use algebra::{
     tensor_cross, von_mises,
 };
 pub use function::{exp_symmetric, log_symmetric};
+pub use power::{power, powers};
 pub use spectral::{Spectral, largest_eigenvalue, symmetric_eigen};
 
 /// A vector of three components.

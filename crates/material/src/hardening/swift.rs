@@ -1,7 +1,9 @@
 //! Power law of the shifted plastic strain.
 
-use super::{FlowState, FlowStress, HardeningLaw};
+use super::{FlowLanes, FlowState, FlowStress, HardeningLaw};
 use crate::{Key, ParameterError, Range};
+use jstsph_tensor::lanes::{Lanes, Simd, TILE};
+use jstsph_tensor::{power, powers};
 use serde::{Deserialize, Serialize};
 
 /// σ_Y = A (ε_0 + ε_p)ⁿ, Greto & Kulasegaram 2019, (4.3), `[eq:swift]`.
@@ -58,7 +60,7 @@ impl HardeningLaw for Swift {
     #[inline]
     fn flow_stress(&self, at: &FlowState) -> FlowStress {
         let strain = self.offset + at.plastic_strain;
-        let value = self.coefficient * strain.powf(self.exponent);
+        let value = self.coefficient * power(strain, self.exponent);
         FlowStress::rate_independent(value, self.exponent * value / strain)
     }
 
@@ -77,6 +79,50 @@ impl HardeningLaw for Swift {
         let value = start.value * sum;
         let strain = self.offset + at.plastic_strain;
         FlowStress::rate_independent(value, self.exponent * value / strain)
+    }
+
+    const ON_LANES: bool = true;
+
+    #[inline(always)]
+    fn flow_stress_tile<S: Simd>(
+        &self,
+        simd: S,
+        plastic_strain: &[f64; TILE],
+        [value, slope]: [&mut [f64; TILE]; 2],
+    ) {
+        let mut strain = [0.0; TILE];
+        for i in 0..TILE {
+            strain[i] = self.offset + plastic_strain[i];
+        }
+        powers(simd, &strain, self.exponent, value);
+        for i in 0..TILE {
+            value[i] *= self.coefficient;
+            slope[i] = self.exponent * value[i] / strain[i];
+        }
+    }
+
+    #[inline(always)]
+    fn flow_stress_lanes<S: Simd>(
+        &self,
+        simd: S,
+        start: &FlowLanes<S>,
+        from: Lanes<S>,
+        at: Lanes<S>,
+    ) -> FlowLanes<S> {
+        let x = (at - from).over(from + Lanes::splat(simd, self.offset));
+        let one = Lanes::splat(simd, 1.0);
+        let mut sum = one;
+        let mut k = SERIES_TERMS;
+        while k > 1 {
+            k -= 1;
+            sum = one + sum * x * ((self.exponent - f64::from(k - 1)) * RECIPROCALS[k as usize]);
+        }
+        let value = start.value * sum;
+        let none = Lanes::splat(simd, f64::NAN);
+        FlowLanes {
+            value: x.abs().if_less(SERIES_LIMIT, value, none),
+            slope: (value * self.exponent).over(at + Lanes::splat(simd, self.offset)),
+        }
     }
 
     /// Al 1100 of Greto & Kulasegaram 2019, Sect. 4.3.

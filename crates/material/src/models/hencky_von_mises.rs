@@ -453,6 +453,7 @@ pub(super) fn example_thermal() -> Thermal {
     }
 }
 
+mod flow;
 mod tile;
 
 #[cfg(test)]

@@ -2,19 +2,14 @@
 //! of radial return point by point. Same formulas, same order, same bits as `respond`.
 
 use super::HenckyVonMises;
-use crate::hardening::{FlowState, FlowStress};
+use super::flow::Flow;
 use crate::logarithmic_strain::{
-    LONG_EXPONENTIAL, LONG_LOGARITHM, SERIES_LIMIT, SHORT_EXPONENTIAL, SHORT_LOGARITHM,
-    SHORT_SERIES_LIMIT,
+    LONG_EXPONENTIAL, LONG_LOGARITHM, SHORT_EXPONENTIAL, SHORT_LOGARITHM, SHORT_SERIES_LIMIT,
 };
-use crate::return_map::RadialReturn;
 use crate::{KinematicsTile, PlasticHistory, Property, ResponseTile};
 use jstsph_tensor::lanes::{
     Lanes, Simd, TILE, TensorTile, WithSimd, load_all, store_all, times, vectorised,
 };
-
-/// Plastic increment up to which exp(−2 Δε_p ν) is inside the range of its series: |2 Δε_p ν|² = 6 Δε_p².
-const LARGEST_INCREMENT: f64 = 0.04;
 
 /// Symmetric tensors as 11, 22, 33, 12, 13, 23.
 type Symmetric<S> = [Lanes<S>; 6];
@@ -91,14 +86,14 @@ fn components_of(tile: &SymmetricTile, i: usize) -> [f64; 6] {
 }
 
 /// The elastic trial.
-struct Trial {
-    determinant: [f64; TILE],
+pub(super) struct Trial {
+    pub(super) determinant: [f64; TILE],
     /// F C_p⁻¹ Fᵀ.
     b: SymmetricTile,
     /// Squared distance of b/(⅓ tr b) from 1, not a number where b is not positive.
-    distortion: [f64; TILE],
+    pub(super) distortion: [f64; TILE],
     stress: SymmetricTile,
-    equivalent_stress: [f64; TILE],
+    pub(super) equivalent_stress: [f64; TILE],
 }
 
 impl Trial {
@@ -109,94 +104,6 @@ impl Trial {
         stress: [[0.0; TILE]; 6],
         equivalent_stress: [0.0; TILE],
     };
-}
-
-/// What radial return makes of the trial.
-struct Flow {
-    plastic: bool,
-    increment: [f64; TILE],
-    plastic_work: [f64; TILE],
-    /// −3 Δε_p/τ_eq,trial: the change of the elastic strain over the trial stress, twice.
-    direction: [f64; TILE],
-    /// τ_eq/τ_eq,trial.
-    ratio: [f64; TILE],
-}
-
-impl Flow {
-    /// `None` for a point that is not sound, or outside the range of the series.
-    #[inline(always)]
-    fn of(
-        model: &HenckyVonMises,
-        shear_modulus: f64,
-        now: &KinematicsTile,
-        old: &[PlasticHistory],
-        trial: &Trial,
-    ) -> Option<Self> {
-        let mut flow = Self {
-            plastic: false,
-            increment: [0.0; TILE],
-            plastic_work: [0.0; TILE],
-            direction: [0.0; TILE],
-            ratio: [1.0; TILE],
-        };
-        // All yield stresses first: independent of each other, their powers and logarithms overlap.
-        let mut starts = [FlowStress::rate_independent(0.0, 0.0); TILE];
-        for (i, old) in old.iter().enumerate() {
-            starts[i] = model.hardening.flow_stress(&FlowState {
-                plastic_strain: old.equivalent_plastic_strain,
-                rate: 0.0,
-                temperature: now.temperature[i],
-            });
-        }
-        for (i, old) in old.iter().enumerate() {
-            let (determinant, jacobian) = (trial.determinant[i], now.jacobian[i]);
-            let sound = determinant > 0.0
-                && determinant < f64::INFINITY
-                && jacobian > 0.0
-                && jacobian < f64::INFINITY
-                && trial.distortion[i] < SERIES_LIMIT;
-            if !sound {
-                return None;
-            }
-            let trial_stress = trial.equivalent_stress[i];
-            let temperature = now.temperature[i];
-            let start = starts[i];
-            if trial_stress <= jacobian * start.value {
-                continue;
-            }
-            if !trial_stress.is_finite() {
-                return None;
-            }
-            let increment = RadialReturn {
-                trial_stress,
-                shear_modulus,
-                jacobian,
-                plastic_strain: old.equivalent_plastic_strain,
-                dt: now.dt,
-                temperature,
-            }
-            .plastic_increment(start, |at| {
-                model.hardening
-                    .flow_stress_near(&start, old.equivalent_plastic_strain, at)
-            })
-            .ok()?;
-            if increment > LARGEST_INCREMENT {
-                return None;
-            }
-            let (stress, work) = if start.value > 0.0 {
-                let stress = trial_stress - 3.0 * shear_modulus * increment;
-                (stress, stress * increment)
-            } else {
-                (0.0, 0.5 * trial_stress * increment)
-            };
-            flow.plastic = true;
-            flow.increment[i] = increment;
-            flow.plastic_work[i] = work;
-            flow.direction[i] = -3.0 * increment / trial_stress;
-            flow.ratio[i] = stress / trial_stress;
-        }
-        Some(flow)
-    }
 }
 
 struct TrialStress<'a> {
