@@ -36,6 +36,7 @@ mod stability;
 mod sweep;
 mod templates;
 mod verdict;
+mod writer;
 
 use std::ffi::OsString;
 use std::sync::atomic::AtomicBool;

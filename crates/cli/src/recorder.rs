@@ -12,14 +12,14 @@ use jstsph_solver::{ConditionKind, ParticleFields, Saved, Simulation};
 
 use crate::error::CliError;
 use crate::restart::{LastRow, encode};
+use crate::writer::Writer;
 
 /// Writes results at the first step at or past each interval.
 pub(crate) struct Recorder<'a> {
     case: &'a Case,
     folder: &'a ResultsFolder,
     history: HistoryWriter,
-    frames: FrameSeries,
-    cells: OwnedCells,
+    writer: Writer,
     next: Next,
     last: LastRow,
     /// The state at the last row, which is known to be finite.
@@ -63,7 +63,7 @@ impl Due {
 }
 
 /// Cells of all bodies with indices into the whole simulation.
-enum OwnedCells {
+pub(crate) enum OwnedCells {
     None,
     Quads(Vec<[usize; 4]>),
     Hexahedra(Vec<[usize; 8]>),
@@ -175,8 +175,7 @@ impl<'a> Recorder<'a> {
             case,
             folder,
             history,
-            frames,
-            cells,
+            writer: Writer::start(frames, cells, folder.restart())?,
             next: Next {
                 history: Due::after(time, case.output.history_interval),
                 frame: Due::after(time, case.output.frame_interval),
@@ -188,7 +187,7 @@ impl<'a> Recorder<'a> {
         if is_new {
             let fields = simulation.particle_fields();
             recorder.row(simulation, &fields)?;
-            recorder.frame(simulation, &fields)?;
+            recorder.frame(simulation, fields)?;
         }
         Ok(recorder)
     }
@@ -198,13 +197,17 @@ impl<'a> Recorder<'a> {
         let row = self.next.history.is_due(simulation);
         let frame = self.next.frame.is_due(simulation);
         if row || frame {
-            let fields = simulation.particle_fields();
+            let fields = if frame {
+                simulation.particle_fields()
+            } else {
+                simulation.fields_for(&self.case.probes)
+            };
             if row {
                 self.row(simulation, &fields)?;
                 self.good = simulation.save();
             }
             if frame {
-                self.frame(simulation, &fields)?;
+                self.frame(simulation, fields)?;
             }
         }
         // Last: a restart file finds the rows and frames of its own time written.
@@ -220,45 +223,51 @@ impl<'a> Recorder<'a> {
         if self.last.time < simulation.time() {
             self.row(simulation, &fields)?;
         }
-        self.last_frame(simulation, &fields)?;
+        self.last_frame(simulation, fields)?;
         self.restart(&simulation.save())?;
+        self.writer.wait()?;
         Ok(())
     }
 
     /// Writes the state as it is, for a run that is to be continued.
     pub(crate) fn interrupt(&mut self, simulation: &Simulation) -> Result<PathBuf, OutputError> {
-        self.restart(&simulation.save())
+        self.restart(&simulation.save())?;
+        self.last_restart()
     }
 
     /// Puts the simulation back to its last good state and writes that.
     pub(crate) fn fail(&mut self, simulation: &mut Simulation) -> Result<PathBuf, OutputError> {
         if simulation.restore(&self.good).is_ok() {
             let fields = simulation.particle_fields();
-            self.last_frame(simulation, &fields)?;
+            self.last_frame(simulation, fields)?;
         }
         let good = std::mem::replace(&mut self.good, simulation.save());
-        self.restart(&good)
+        self.restart(&good)?;
+        self.last_restart()
     }
 
     fn last_frame(
         &mut self,
         simulation: &Simulation,
-        fields: &ParticleFields,
+        fields: ParticleFields,
     ) -> Result<(), OutputError> {
-        match self.frames.last_time() {
+        match self.writer.last_frame() {
             Some(time) if time >= simulation.time() => Ok(()),
             _ => self.frame(simulation, fields),
         }
     }
 
-    fn restart(&self, saved: &Saved) -> Result<PathBuf, OutputError> {
+    fn restart(&mut self, saved: &Saved) -> Result<(), OutputError> {
         // Rows that a power failure takes must not be missing before a state that it leaves.
         self.history.sync()?;
-        write_restart(
-            &self.folder.restart(),
-            saved.step,
-            &encode(saved, &self.case.resolved, &self.last),
-        )
+        let data = encode(saved, &self.case.resolved, &self.last);
+        self.writer.restart(saved.step, data)
+    }
+
+    /// The restart file given last, once it is there.
+    fn last_restart(&mut self) -> Result<PathBuf, OutputError> {
+        let path = self.writer.wait()?;
+        Ok(path.unwrap_or_else(|| self.folder.restart()))
     }
 
     fn row(&mut self, simulation: &Simulation, fields: &ParticleFields) -> Result<(), OutputError> {
@@ -303,26 +312,29 @@ impl<'a> Recorder<'a> {
     fn frame(
         &mut self,
         simulation: &Simulation,
-        fields: &ParticleFields,
+        fields: ParticleFields,
     ) -> Result<(), OutputError> {
         let state = simulation.state();
-        let mut frame = Frame::new(simulation.time(), simulation.step_count(), &state.position)
-            .scalar("jacobian", &state.jacobian[..])
-            .scalar("determinant", &fields.determinant[..])
-            .scalar("von_mises_stress", &fields.von_mises_stress[..])
-            .scalar("pressure", &fields.pressure[..])
-            .scalar(
-                "equivalent_plastic_strain",
-                &fields.equivalent_plastic_strain[..],
-            )
-            .scalar("wave_speed", &fields.wave_speed[..])
-            .vector("displacement", &fields.displacement[..])
-            .vector("velocity", &fields.velocity[..])
-            .tensor("deformation_gradient", &fields.deformation_gradient[..])
-            .tensor("cauchy_stress", &fields.cauchy_stress[..])
-            .lattice(self.cells.borrowed());
+        let mut frame = Frame::new(
+            simulation.time(),
+            simulation.step_count(),
+            state.position.clone(),
+        )
+        .scalar("jacobian", state.jacobian.clone())
+        .scalar("determinant", fields.determinant)
+        .scalar("von_mises_stress", fields.von_mises_stress)
+        .scalar("pressure", fields.pressure)
+        .scalar(
+            "equivalent_plastic_strain",
+            fields.equivalent_plastic_strain,
+        )
+        .scalar("wave_speed", fields.wave_speed)
+        .vector("displacement", fields.displacement)
+        .vector("velocity", fields.velocity)
+        .tensor("deformation_gradient", fields.deformation_gradient)
+        .tensor("cauchy_stress", fields.cauchy_stress);
         if simulation.has_heat() {
-            frame = frame.scalar("temperature", &fields.temperature[..]);
+            frame = frame.scalar("temperature", fields.temperature);
         }
         let chosen = &self.case.output.fields;
         frame.scalars.retain(|(name, _)| chosen.contains(&&**name));
@@ -337,8 +349,7 @@ impl<'a> Recorder<'a> {
             }
             frame = frame.scalar("body", body);
         }
-        self.frames.write(&frame)?;
-        Ok(())
+        self.writer.frame(frame)
     }
 }
 
@@ -366,7 +377,7 @@ impl OwnedCells {
         }
     }
 
-    fn borrowed(&self) -> Lattice<'_> {
+    pub(crate) fn borrowed(&self) -> Lattice<'_> {
         match self {
             Self::None => Lattice::None,
             Self::Quads(cells) => Lattice::Quads(cells),

@@ -18,7 +18,7 @@ pub type Field<'a, T> = (Cow<'a, str>, Cow<'a, [T]>);
 /// use jstsph_tensor::Vec3;
 ///
 /// let positions = [Vec3::zeros(), Vec3::x()];
-/// let frame = Frame::new(0.5, 12, &positions)
+/// let frame = Frame::new(0.5, 12, &positions[..])
 ///     .scalar("pressure", vec![1.0e5, 2.0e5])
 ///     .vector("velocity", &positions[..]);
 /// assert!(frame.check().is_ok());
@@ -30,7 +30,7 @@ pub struct Frame<'a> {
     /// Number of steps done.
     pub step: u64,
     /// Current positions, m.
-    pub positions: &'a [Vec3],
+    pub positions: Cow<'a, [Vec3]>,
     /// Scalar fields.
     pub scalars: Vec<Field<'a, f64>>,
     /// Vector fields.
@@ -54,12 +54,12 @@ pub enum Lattice<'a> {
 }
 
 impl<'a> Frame<'a> {
-    /// A frame without fields; `time` in s, `positions` in m.
-    pub fn new(time: f64, step: u64, positions: &'a [Vec3]) -> Self {
+    /// A frame without fields; `time` in s, `positions` in m, borrowed or owned.
+    pub fn new(time: f64, step: u64, positions: impl Into<Cow<'a, [Vec3]>>) -> Self {
         Self {
             time,
             step,
-            positions,
+            positions: positions.into(),
             scalars: Vec::new(),
             vectors: Vec::new(),
             tensors: Vec::new(),
@@ -121,7 +121,7 @@ impl<'a> Frame<'a> {
     pub(crate) fn check_magnitude(&self, largest: f64) -> Result<(), OutputError> {
         let particles = self.positions.len();
         require_finite("time", [self.time])?;
-        check_values("position", self.positions, particles, largest)?;
+        check_values("position", &self.positions, particles, largest)?;
         for (name, values) in &self.scalars {
             check_values(name, values, particles, largest)?;
         }
@@ -243,7 +243,7 @@ mod tests {
         let positions = [Vec3::zeros(), Vec3::x(), Vec3::y()];
         let mut stress = [Mat3::identity(); 3];
         stress[2][(1, 0)] = f64::NAN;
-        let error = Frame::new(0.0, 0, &positions)
+        let error = Frame::new(0.0, 0, &positions[..])
             .tensor("cauchy_stress", &stress[..])
             .check()
             .unwrap_err();
@@ -257,7 +257,7 @@ mod tests {
     #[test]
     fn lengths_names_and_cells_are_checked() {
         let positions = [Vec3::zeros(), Vec3::x()];
-        let short = Frame::new(0.0, 0, &positions).scalar("jacobian", vec![1.0]);
+        let short = Frame::new(0.0, 0, &positions[..]).scalar("jacobian", vec![1.0]);
         assert!(matches!(
             short.check(),
             Err(OutputError::FieldLength {
@@ -266,14 +266,14 @@ mod tests {
                 ..
             })
         ));
-        let twice = Frame::new(0.0, 0, &positions)
+        let twice = Frame::new(0.0, 0, &positions[..])
             .scalar("velocity", vec![1.0, 2.0])
             .vector("velocity", &positions[..]);
         assert!(matches!(
             twice.check(),
             Err(OutputError::DuplicateName { .. })
         ));
-        let cells = Frame::new(0.0, 0, &positions).lattice(Lattice::Quads(&[[0, 1, 2, 0]]));
+        let cells = Frame::new(0.0, 0, &positions[..]).lattice(Lattice::Quads(&[[0, 1, 2, 0]]));
         assert!(matches!(
             cells.check(),
             Err(OutputError::CellPoint {

@@ -358,7 +358,7 @@ mod tests {
         }
 
         fn frame(&self) -> Frame<'_> {
-            Frame::new(0.1 + 0.2, 17, &self.positions)
+            Frame::new(0.1 + 0.2, 17, &self.positions[..])
                 .scalar("pressure & <more>", &self.pressure[..])
                 .vector("Points", &self.positions[..])
                 .tensor("cauchy_stress", &self.stress[..])

@@ -153,7 +153,7 @@ impl Elements {
             encoder.integers("offsets", &cells.offsets)?,
             encoder.integers("connectivity", &cells.connectivity)?,
         ];
-        let points = encoder.floats("Points", frame.positions)?;
+        let points = encoder.floats("Points", &frame.positions)?;
         let mut fields = Vec::new();
         for (name, values) in frame.tensors.iter().rev() {
             fields.push(encoder.floats(name, values)?);

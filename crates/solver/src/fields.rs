@@ -3,6 +3,7 @@
 use jstsph_tensor::{Mat3, Vec3, von_mises};
 
 use crate::parallel;
+use crate::probe::{Field, Probe, ProbeKind};
 use crate::simulation::Simulation;
 use crate::stress;
 use crate::time_step::smallest_stretch;
@@ -33,65 +34,142 @@ pub struct ParticleFields {
     pub wave_speed: Vec<f64>,
 }
 
+/// A vector of `value(i)`.
+fn filled<T: Clone + Send>(items: usize, zero: T, value: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let mut filled = vec![zero; items];
+    parallel::fill(&mut filled, value);
+    filled
+}
+
+/// Which fields are computed; the others stay empty. Plastic strain and temperature always are.
+#[derive(Clone, Copy, Debug, Default)]
+struct Wanted {
+    velocity: bool,
+    displacement: bool,
+    deformation_gradient: bool,
+    determinant: bool,
+    stress: bool,
+    wave_speed: bool,
+}
+
+impl Wanted {
+    const ALL: Self = Self {
+        velocity: true,
+        displacement: true,
+        deformation_gradient: true,
+        determinant: true,
+        stress: true,
+        wave_speed: true,
+    };
+
+    /// What the readings of probes take from the fields.
+    fn by(probes: &[Probe]) -> Self {
+        let mut wanted = Self::default();
+        for probe in probes {
+            match &probe.kind {
+                ProbeKind::EdgeRadius { .. } => wanted.deformation_gradient = true,
+                ProbeKind::Statistic { field, .. }
+                | ProbeKind::Point { field, .. }
+                | ProbeKind::Line { field, .. } => match field {
+                    Field::VonMisesStress | Field::Pressure => wanted.stress = true,
+                    Field::WaveSpeed => wanted.wave_speed = true,
+                    Field::Velocity(_) => wanted.velocity = true,
+                    Field::EquivalentPlasticStrain
+                    | Field::Temperature
+                    | Field::Jacobian
+                    | Field::Displacement(_)
+                    | Field::Position(_) => {}
+                },
+                ProbeKind::Extent { .. } | ProbeKind::Radius { .. } => {}
+            }
+        }
+        wanted
+    }
+}
+
 impl Simulation {
     /// Computes all fields; allocates, and is meant for output.
     #[must_use]
     pub fn particle_fields(&self) -> ParticleFields {
+        self.fields(Wanted::ALL)
+    }
+
+    /// The fields that these probes read, the plastic strain and the temperature, with the bits of
+    /// [`particle_fields`](Self::particle_fields) in a fraction of its time; the others are empty.
+    #[must_use]
+    pub fn fields_for(&self, probes: &[Probe]) -> ParticleFields {
+        self.fields(Wanted::by(probes))
+    }
+
+    fn fields(&self, wanted: Wanted) -> ParticleFields {
         let (reference, state, work) = (&self.reference, &self.state, &self.work);
         let (particles, points) = (reference.position.len(), reference.point_volume.len());
         let mut point_strain = vec![0.0; points];
         stress::equivalent_plastic_strain(reference, &self.materials, &mut point_strain);
 
-        let mut point_stress = vec![Mat3::zeros(); points];
-        parallel::fill(&mut point_stress, |q| {
-            let f = &state.deformation_gradient[q];
-            // σ = P Fᵀ / det F.
-            let cauchy = work.scaled_stress[q] * f.transpose()
-                / (reference.point_volume[q] * f.determinant());
-            jstsph_tensor::symmetric_part(&cauchy)
-        });
-
+        let mut point_stress = Vec::new();
+        if wanted.stress {
+            point_stress = filled(points, Mat3::zeros(), |q| {
+                let f = &state.deformation_gradient[q];
+                // σ = P Fᵀ / det F.
+                let cauchy = work.scaled_stress[q] * f.transpose()
+                    / (reference.point_volume[q] * f.determinant());
+                jstsph_tensor::symmetric_part(&cauchy)
+            });
+        }
+        let of_particles = |wanted: bool| if wanted { particles } else { 0 };
         let mut fields = ParticleFields {
-            velocity: vec![Vec3::zeros(); particles],
-            displacement: vec![Vec3::zeros(); particles],
-            deformation_gradient: vec![Mat3::zeros(); particles],
-            determinant: vec![0.0; particles],
-            cauchy_stress: vec![Mat3::zeros(); particles],
-            von_mises_stress: vec![0.0; particles],
-            pressure: vec![0.0; particles],
+            velocity: filled(of_particles(wanted.velocity), Vec3::zeros(), |a| {
+                let momentum = if self.synchronised {
+                    state.momentum[a]
+                } else {
+                    (state.momentum[a] + self.ledger.momentum_before[a]) * 0.5
+                };
+                momentum / reference.density[a]
+            }),
+            displacement: filled(of_particles(wanted.displacement), Vec3::zeros(), |a| {
+                state.position[a] - reference.position[a]
+            }),
+            deformation_gradient: vec![Mat3::zeros(); of_particles(wanted.deformation_gradient)],
+            determinant: vec![0.0; of_particles(wanted.determinant)],
+            cauchy_stress: vec![Mat3::zeros(); of_particles(wanted.stress)],
+            von_mises_stress: Vec::new(),
+            pressure: Vec::new(),
             equivalent_plastic_strain: vec![0.0; particles],
             temperature: state.temperature.clone(),
-            wave_speed: vec![0.0; particles],
+            wave_speed: vec![0.0; of_particles(wanted.wave_speed)],
         };
-        for a in 0..particles {
-            let momentum = if self.synchronised {
-                state.momentum[a]
-            } else {
-                (state.momentum[a] + self.ledger.momentum_before[a]) * 0.5
-            };
-            fields.velocity[a] = momentum / reference.density[a];
-            fields.displacement[a] = state.position[a] - reference.position[a];
-        }
         for body in &reference.bodies {
-            let (start, first) = (body.particles.start, body.points.start);
-            for a in 0..body.particles.len() {
-                let shares = &body.shares;
-                let gradient = shares.mean_tensor(a, |q| state.deformation_gradient[first + q]);
-                let stress = shares.mean_tensor(a, |q| point_stress[first + q]);
-                let i = start + a;
-                fields.determinant[i] =
-                    shares.mean(a, |q| state.deformation_gradient[first + q].determinant());
-                fields.deformation_gradient[i] = gradient;
-                fields.von_mises_stress[i] = von_mises(&stress);
-                fields.pressure[i] = jstsph_tensor::mean_trace(&stress);
-                fields.cauchy_stress[i] = stress;
-                fields.equivalent_plastic_strain[i] = shares.mean(a, |q| point_strain[first + q]);
-                let stretch = shares.mean(a, |q| {
-                    smallest_stretch(&state.deformation_gradient[first + q])
+            let (range, first) = (body.particles.clone(), body.points.start);
+            let shares = &body.shares;
+            let gradient = |q: usize| &state.deformation_gradient[first + q];
+            parallel::fill(&mut fields.equivalent_plastic_strain[range.clone()], |a| {
+                shares.mean(a, |q| point_strain[first + q])
+            });
+            if wanted.deformation_gradient {
+                parallel::fill(&mut fields.deformation_gradient[range.clone()], |a| {
+                    shares.mean_tensor(a, |q| *gradient(q))
                 });
-                fields.wave_speed[i] = body.wave_speed / stretch;
+            }
+            if wanted.determinant {
+                parallel::fill(&mut fields.determinant[range.clone()], |a| {
+                    shares.mean(a, |q| gradient(q).determinant())
+                });
+            }
+            if wanted.stress {
+                parallel::fill(&mut fields.cauchy_stress[range.clone()], |a| {
+                    shares.mean_tensor(a, |q| point_stress[first + q])
+                });
+            }
+            if wanted.wave_speed {
+                parallel::fill(&mut fields.wave_speed[range], |a| {
+                    body.wave_speed / shares.mean(a, |q| smallest_stretch(gradient(q)))
+                });
             }
         }
+        let stress = &fields.cauchy_stress;
+        fields.von_mises_stress = filled(stress.len(), 0.0, |a| von_mises(&stress[a]));
+        fields.pressure = filled(stress.len(), 0.0, |a| jstsph_tensor::mean_trace(&stress[a]));
         fields
     }
 
@@ -109,3 +187,6 @@ impl Simulation {
         Some(("jacobian", a))
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,226 @@
+//! Frames and restart files are written by a thread of their own while the run goes on.
+
+use std::path::PathBuf;
+use std::sync::mpsc::{Receiver, SyncSender, channel, sync_channel};
+use std::thread::JoinHandle;
+
+use jstsph_output::{Frame, FrameSeries, OutputError, RestartData, write_restart};
+
+use crate::recorder::OwnedCells;
+
+/// One file to write.
+enum Job {
+    Frame(Box<Frame<'static>>),
+    Restart { step: u64, data: Box<RestartData> },
+}
+
+/// Writes what it is given in that order, one at a time: a restart file finds the frames before it
+/// written. A file is only accepted when none waits, so that no more than two are held in memory.
+///
+/// An error reaches whoever gives it the next file, or waits for the last; nothing is written after it.
+pub(crate) struct Writer {
+    /// Where it writes, for its messages.
+    folder: PathBuf,
+    jobs: Option<SyncSender<Job>>,
+    done: Receiver<Outcome>,
+    handle: Option<JoinHandle<()>>,
+    /// Files given whose outcome has not been received.
+    open: usize,
+    last_frame: Option<f64>,
+}
+
+/// The path of a restart file.
+type Outcome = Result<Option<PathBuf>, OutputError>;
+
+impl Writer {
+    /// Starts the thread for a series of frames of these cells and restart files into the folder.
+    ///
+    /// # Errors
+    /// The system has no thread to give.
+    pub(crate) fn start(
+        mut frames: FrameSeries,
+        cells: OwnedCells,
+        folder: PathBuf,
+    ) -> Result<Self, OutputError> {
+        let last_frame = frames.last_time();
+        // No buffer: giving a file waits until the thread takes it.
+        let (jobs, queue) = sync_channel::<Job>(0);
+        let (report, done) = channel();
+        let restart = folder.clone();
+        let write = move |job| match job {
+            Job::Frame(frame) => frames.write(&frame.lattice(cells.borrowed())).map(|_| None),
+            Job::Restart { step, data } => write_restart(&restart, step, &data).map(Some),
+        };
+        let handle = std::thread::Builder::new()
+            .name("writer".to_owned())
+            .spawn(move || {
+                for outcome in queue.into_iter().map(write) {
+                    let failed = outcome.is_err();
+                    if report.send(outcome).is_err() || failed {
+                        return;
+                    }
+                }
+            })
+            .map_err(|source| OutputError::Io {
+                action: "start a thread that writes",
+                path: folder.clone(),
+                source,
+            })?;
+        Ok(Self {
+            folder,
+            jobs: Some(jobs),
+            done,
+            handle: Some(handle),
+            open: 0,
+            last_frame,
+        })
+    }
+
+    /// Time (s) of the last frame given to it.
+    pub(crate) fn last_frame(&self) -> Option<f64> {
+        self.last_frame
+    }
+
+    /// Has a frame, without its cells, written.
+    ///
+    /// # Errors
+    /// Of this frame, if it is not finite; of an earlier file.
+    pub(crate) fn frame(&mut self, frame: Frame<'static>) -> Result<(), OutputError> {
+        frame.check()?;
+        self.last_frame = Some(frame.time);
+        self.give(Job::Frame(Box::new(frame)))
+    }
+
+    /// Has the state after `step` written.
+    ///
+    /// # Errors
+    /// Of an earlier file.
+    pub(crate) fn restart(&mut self, step: u64, data: RestartData) -> Result<(), OutputError> {
+        let data = Box::new(data);
+        self.give(Job::Restart { step, data })
+    }
+
+    /// Waits until everything is written; the last restart file of those it waited for.
+    ///
+    /// # Errors
+    /// The first error there was.
+    pub(crate) fn wait(&mut self) -> Outcome {
+        let mut last = None;
+        while self.open > 0 {
+            last = self.receive()?.or(last);
+        }
+        Ok(last)
+    }
+
+    fn give(&mut self, job: Job) -> Result<(), OutputError> {
+        while let Ok(outcome) = self.done.try_recv() {
+            self.open -= 1;
+            outcome?;
+        }
+        let jobs = self.jobs.as_ref();
+        let taken = jobs.is_some_and(|jobs| jobs.send(job).is_ok());
+        if taken {
+            self.open += 1;
+            return Ok(());
+        }
+        // The thread has ended, with an error that may have come while this file waited.
+        self.wait()?;
+        Err(self.lost())
+    }
+
+    fn receive(&mut self) -> Outcome {
+        let outcome = self.done.recv().map_err(|_| self.lost())?;
+        self.open -= 1;
+        outcome
+    }
+
+    fn lost(&self) -> OutputError {
+        OutputError::Io {
+            action: "write",
+            path: self.folder.clone(),
+            source: std::io::Error::other("the thread that writes has ended"),
+        }
+    }
+}
+
+impl Drop for Writer {
+    /// Lets the thread finish what it was given.
+    fn drop(&mut self) {
+        self.jobs = None;
+        if let Some(handle) = self.handle.take() {
+            // A panic of the thread has been printed and shows as a lost thread above.
+            let _ = handle.join();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use jstsph_output::FrameOptions;
+    use jstsph_tensor::Vec3;
+
+    fn writer(folder: &std::path::Path) -> Writer {
+        let frames = FrameSeries::create(folder, FrameOptions::default());
+        Writer::start(frames, OwnedCells::None, folder.to_path_buf()).unwrap()
+    }
+
+    fn frame(time: f64) -> Frame<'static> {
+        Frame::new(time, 0, vec![Vec3::x() * time; 1000])
+    }
+
+    fn state() -> RestartData {
+        RestartData {
+            header: serde_json::json!({}),
+            arrays: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn files_are_written_in_the_order_they_are_given() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut writer = writer(folder.path());
+        for step in 0..5 {
+            writer.frame(frame(f64::from(step))).unwrap();
+        }
+        writer.restart(7, state()).unwrap();
+        let path = writer.wait().unwrap().unwrap();
+        assert!(path.ends_with("state-000000000007.jstsph") && path.exists());
+        assert_eq!(writer.last_frame(), Some(4.0));
+        assert_eq!(writer.wait().unwrap(), None, "nothing is left to wait for");
+        let collection =
+            jstsph_output::Collection::read(&folder.path().join("frames.pvd")).unwrap();
+        let times: Vec<f64> = collection.entries().iter().map(|(time, _)| *time).collect();
+        assert_eq!(times, [0.0, 1.0, 2.0, 3.0, 4.0]);
+    }
+
+    #[test]
+    fn dropping_it_finishes_what_it_was_given() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut writer = writer(folder.path());
+        writer.frame(frame(1.0)).unwrap();
+        drop(writer);
+        assert!(folder.path().join("frame_000000.vtu").exists());
+    }
+
+    #[test]
+    fn an_error_reaches_the_next_that_comes() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut writer = writer(&folder.path().join("missing"));
+        writer.frame(frame(1.0)).unwrap();
+        let error = writer.wait().unwrap_err();
+        assert!(error.to_string().contains("missing"), "{error}");
+        let error = writer.frame(frame(2.0)).unwrap_err();
+        assert!(error.to_string().contains("has ended"), "{error}");
+    }
+
+    #[test]
+    fn a_frame_that_is_not_finite_is_refused_at_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut writer = writer(folder.path());
+        let error = writer.frame(frame(f64::NAN)).unwrap_err();
+        assert!(matches!(error, OutputError::NotFinite { .. }), "{error}");
+        writer.frame(frame(1.0)).unwrap();
+        writer.wait().unwrap();
+    }
+}
