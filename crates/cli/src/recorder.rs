@@ -150,7 +150,6 @@ impl<'a> Recorder<'a> {
                 CellKind::Lattice
             },
         };
-        let good = simulation.save();
         let last = resumed.unwrap_or_else(|| LastRow {
             time,
             impulses: impulses(simulation),
@@ -159,7 +158,7 @@ impl<'a> Recorder<'a> {
         let (history, frames) = if is_new {
             // Also when it is resumed: it may have been killed before its first row or frame. The
             // state comes first, so that where there is a history there is a state.
-            let data = encode(&good, &case.resolved, &last);
+            let data = encode(simulation.save(), &case.resolved, &last);
             write_restart(&folder.restart(), 0, &data)?;
             (
                 HistoryWriter::create(&folder.history(), columns)?,
@@ -182,7 +181,7 @@ impl<'a> Recorder<'a> {
                 restart: Due::after(time, case.output.restart_interval),
             },
             last,
-            good,
+            good: simulation.save(),
         };
         if is_new {
             let fields = simulation.particle_fields();
@@ -212,7 +211,7 @@ impl<'a> Recorder<'a> {
         }
         // Last: a restart file finds the rows and frames of its own time written.
         if self.next.restart.is_due(simulation) {
-            self.restart(&simulation.save())?;
+            self.restart(simulation.save())?;
         }
         Ok(())
     }
@@ -224,14 +223,14 @@ impl<'a> Recorder<'a> {
             self.row(simulation, &fields)?;
         }
         self.last_frame(simulation, fields)?;
-        self.restart(&simulation.save())?;
+        self.restart(simulation.save())?;
         self.writer.wait()?;
         Ok(())
     }
 
     /// Writes the state as it is, for a run that is to be continued.
     pub(crate) fn interrupt(&mut self, simulation: &Simulation) -> Result<PathBuf, OutputError> {
-        self.restart(&simulation.save())?;
+        self.restart(simulation.save())?;
         self.last_restart()
     }
 
@@ -242,7 +241,7 @@ impl<'a> Recorder<'a> {
             self.last_frame(simulation, fields)?;
         }
         let good = std::mem::replace(&mut self.good, simulation.save());
-        self.restart(&good)?;
+        self.restart(good)?;
         self.last_restart()
     }
 
@@ -257,11 +256,12 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    fn restart(&mut self, saved: &Saved) -> Result<(), OutputError> {
+    fn restart(&mut self, saved: Saved) -> Result<(), OutputError> {
         // Rows that a power failure takes must not be missing before a state that it leaves.
         self.history.sync()?;
+        let step = saved.step;
         let data = encode(saved, &self.case.resolved, &self.last);
-        self.writer.restart(saved.step, data)
+        self.writer.restart(step, data)
     }
 
     /// The restart file given last, once it is there.

@@ -15,7 +15,7 @@ pub(crate) struct LastRow {
 }
 
 /// A restart file's contents.
-pub(crate) fn encode(saved: &Saved, resolved: &str, last: &LastRow) -> RestartData {
+pub(crate) fn encode(saved: Saved, resolved: &str, last: &LastRow) -> RestartData {
     let impulses: Vec<[f64; 3]> = last.impulses.iter().map(|v| [v.x, v.y, v.z]).collect();
     RestartData {
         header: json!({
@@ -29,11 +29,11 @@ pub(crate) fn encode(saved: &Saved, resolved: &str, last: &LastRow) -> RestartDa
         }),
         arrays: saved
             .arrays
-            .iter()
+            .into_iter()
             .map(|(name, values)| RestartArray {
-                name: name.clone(),
+                name,
                 shape: vec![values.len() as u64],
-                values: values.clone(),
+                values,
             })
             .collect(),
     }
@@ -92,7 +92,7 @@ mod tests {
             impulses: vec![Vec3::new(1.0, 2.0, 3.0)],
         };
         let folder = tempfile::tempdir().expect("a folder");
-        jstsph_output::write_restart(folder.path(), 7, &encode(&saved, "text", &last))
+        jstsph_output::write_restart(folder.path(), 7, &encode(saved.clone(), "text", &last))
             .expect("written");
         let (data, warnings) = jstsph_output::read_latest_restart(folder.path()).expect("read");
         assert!(warnings.is_empty());

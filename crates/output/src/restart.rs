@@ -1,5 +1,6 @@
 //! Restart files: the state of a run, bit for bit, with a checksum.
 
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use crate::{OutputError, atomic_write};
@@ -88,8 +89,8 @@ pub enum RestartProblem {
 /// [`OutputError::RestartShape`], [`OutputError::DuplicateName`], [`OutputError::Io`].
 pub fn write_restart(folder: &Path, step: u64, data: &RestartData) -> Result<PathBuf, OutputError> {
     let path = folder.join(format!("state-{step:012}.jstsph"));
-    let bytes = encode(&path, data)?;
-    atomic_write(&path, |writer| writer.write_all(&bytes))?;
+    let header = header(&path, data)?;
+    atomic_write(&path, |writer| encode(&header, data, writer))?;
     let states = states(folder)?;
     let kept = states.iter().filter(|(s, _)| *s <= step).take(KEPT);
     let kept: Vec<u64> = kept.map(|(s, _)| *s).collect();
@@ -152,18 +153,8 @@ fn states(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputError> {
     Ok(states)
 }
 
-fn encode(path: &Path, data: &RestartData) -> Result<Vec<u8>, OutputError> {
-    let mut bytes = Vec::new();
-    let put = |bytes: &mut Vec<u8>, number: usize| bytes.extend((number as u64).to_le_bytes());
-    bytes.extend(MAGIC);
-    bytes.extend(VERSION.to_le_bytes());
-    let header = serde_json::to_vec(&data.header).map_err(|source| OutputError::Json {
-        path: path.to_path_buf(),
-        source,
-    })?;
-    put(&mut bytes, header.len());
-    bytes.extend(header);
-    put(&mut bytes, data.arrays.len());
+/// The header, after checking that the arrays can be read back.
+fn header(path: &Path, data: &RestartData) -> Result<Vec<u8>, OutputError> {
     for (index, array) in data.arrays.iter().enumerate() {
         if data.arrays[..index].iter().any(|a| a.name == array.name) {
             return Err(OutputError::DuplicateName {
@@ -177,15 +168,60 @@ fn encode(path: &Path, data: &RestartData) -> Result<Vec<u8>, OutputError> {
                 values: array.values.len(),
             });
         }
-        put(&mut bytes, array.name.len());
-        bytes.extend(array.name.as_bytes());
-        put(&mut bytes, array.shape.len());
-        bytes.extend(array.shape.iter().flat_map(|extent| extent.to_le_bytes()));
-        bytes.extend(array.values.iter().flat_map(|value| value.to_le_bytes()));
     }
-    let checksum = blake3::hash(&bytes);
-    bytes.extend(checksum.as_bytes());
-    Ok(bytes)
+    serde_json::to_vec(&data.header).map_err(|source| OutputError::Json {
+        path: path.to_path_buf(),
+        source,
+    })
+}
+
+/// Writes the file piece by piece: the state of a large run is not held in memory once more.
+fn encode(header: &[u8], data: &RestartData, writer: &mut dyn Write) -> io::Result<()> {
+    let mut writer = Hashing {
+        writer,
+        hasher: blake3::Hasher::new(),
+    };
+    writer.write_all(&MAGIC)?;
+    writer.write_all(&VERSION.to_le_bytes())?;
+    writer.length(header.len())?;
+    writer.write_all(header)?;
+    writer.length(data.arrays.len())?;
+    for array in &data.arrays {
+        writer.length(array.name.len())?;
+        writer.write_all(array.name.as_bytes())?;
+        writer.length(array.shape.len())?;
+        for extent in &array.shape {
+            writer.write_all(&extent.to_le_bytes())?;
+        }
+        let mut piece = Vec::with_capacity(8 * PIECE.min(array.values.len()));
+        for values in array.values.chunks(PIECE) {
+            piece.clear();
+            piece.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+            writer.write_all(&piece)?;
+        }
+    }
+    let checksum = writer.hasher.finalize();
+    writer.writer.write_all(checksum.as_bytes())
+}
+
+/// Values that are written at once.
+const PIECE: usize = 1 << 14;
+
+/// Writes, and sums up what was written.
+struct Hashing<'a> {
+    writer: &'a mut dyn Write,
+    hasher: blake3::Hasher,
+}
+
+impl Hashing<'_> {
+    fn write_all(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.hasher.update(bytes);
+        self.writer.write_all(bytes)
+    }
+
+    fn length(&mut self, number: usize) -> io::Result<()> {
+        self.write_all(&(number as u64).to_le_bytes())
+    }
 }
 
 fn product(shape: &[u64]) -> Option<u64> {
@@ -282,6 +318,13 @@ impl<'a> Reader<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn bytes_of(data: &RestartData) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let header = header(Path::new("a"), data).unwrap();
+        encode(&header, data, &mut bytes).unwrap();
+        bytes
+    }
     use serde_json::json;
 
     fn sample() -> RestartData {
@@ -343,7 +386,7 @@ mod tests {
 
     #[test]
     fn every_flipped_bit_and_every_truncation_is_noticed() {
-        let bytes = encode(Path::new("a"), &sample()).unwrap();
+        let bytes = bytes_of(&sample());
         assert_same_bits(&decode(&bytes).unwrap(), &sample());
         for at in 0..bytes.len() {
             for bit in 0..8 {
@@ -362,7 +405,7 @@ mod tests {
 
     #[test]
     fn nonsense_with_a_right_checksum_is_refused_without_panic_or_huge_memory() {
-        let bytes = encode(Path::new("a"), &sample()).unwrap();
+        let bytes = bytes_of(&sample());
         let content = &bytes[..bytes.len() - CHECKSUM];
         // Overwrite each aligned and unaligned word of the content by a huge number.
         for at in MAGIC.len()..content.len() - 8 {
