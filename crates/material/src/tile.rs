@@ -14,10 +14,13 @@ pub struct KinematicsTile {
     pub temperature: [f64; TILE],
     /// Time since the committed history, s.
     pub dt: f64,
+    /// Whether the points are in plane strain: of F only the components 11, 21, 12, 22 and 33 are read,
+    /// and histories and stresses have no others.
+    pub plane: bool,
 }
 
 impl KinematicsTile {
-    /// A buffer to fill, for a step of `dt` seconds.
+    /// A buffer to fill, for a step of `dt` seconds; not of plane strain.
     #[must_use]
     pub fn new(dt: f64) -> Self {
         Self {
@@ -25,6 +28,7 @@ impl KinematicsTile {
             jacobian: [0.0; TILE],
             temperature: [0.0; TILE],
             dt,
+            plane: false,
         }
     }
 }

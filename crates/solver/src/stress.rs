@@ -3,6 +3,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use jstsph_geometry::Dimension;
 use jstsph_material::{
     Block, BlockReader, BlockVisitor, History, Kinematics, Material, MaterialBlock, MaterialError,
 };
@@ -20,6 +21,8 @@ mod tile;
 #[derive(Clone, Copy)]
 struct Points<'a> {
     strains: Strains,
+    /// Whether nothing happens out of the plane.
+    plane: bool,
     body: &'a BodyReference,
     jacobian: &'a [f64],
     temperature: &'a [f64],
@@ -261,6 +264,7 @@ fn points_of<'a>(
 ) -> Points<'a> {
     Points {
         strains,
+        plane: reference.dimension == Dimension::PlaneStrain,
         body,
         jacobian: &state.jacobian[body.particles.clone()],
         temperature: &state.temperature[body.particles.clone()],

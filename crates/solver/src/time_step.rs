@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use jstsph_geometry::Dimension;
 use jstsph_tensor::{Mat3, double_dot, largest_eigenvalue};
 
 use crate::parallel;
@@ -43,11 +44,16 @@ fn inverse_cauchy_green(deformation_gradient: &Mat3, cofactor: &Mat3) -> Mat3 {
 
 /// The largest 1/λ² of a range of at most [`parallel::LEAF`] points, the first of them where several
 /// have it; not a number, at the first such point, where a strain is not finite.
-fn steepest_of(range: Range<usize>, gradients: &[Mat3], cofactors: &[Mat3]) -> Steepest {
+fn steepest_of(
+    plane: bool,
+    range: Range<usize>,
+    gradients: &[Mat3],
+    cofactors: &[Mat3],
+) -> Steepest {
     let start = range.start;
     let mut buffer = [0.0; parallel::LEAF];
     let bounds = &mut buffer[..range.len()];
-    bound::evaluate(&gradients[range.clone()], &cofactors[range], bounds);
+    bound::evaluate(plane, &gradients[range.clone()], &cofactors[range], bounds);
     let mut largest = 0;
     for (k, bound) in bounds.iter().enumerate() {
         if !bound.is_finite() {
@@ -90,13 +96,14 @@ pub(crate) fn stable_step(reference: &Reference, state: &State) -> StableStep {
         point: 0,
         stretch: 1.0,
     };
+    let plane = reference.dimension == Dimension::PlaneStrain;
     for body in &reference.bodies {
         let start = body.points.start;
         let gradients = &state.deformation_gradient[body.points.clone()];
         let cofactors = &state.cofactor[body.points.clone()];
         let steepest = parallel::reduce(
             gradients.len(),
-            &|range| steepest_of(range, gradients, cofactors),
+            &|range| steepest_of(plane, range, gradients, cofactors),
             &|a: Steepest, b: Steepest| {
                 if a.inverse_stretch_squared.is_nan()
                     || a.inverse_stretch_squared >= b.inverse_stretch_squared
@@ -142,11 +149,11 @@ mod tests {
     /// Two bodies of different material and more points than one leaf of the reduction has.
     fn two_bodies() -> (Reference, State) {
         let mut model = model(
-            [30, 20, 1],
+            [10, 10, 6],
             elastic(),
             scheme(Quadrature::Bonds, Integrator::Leapfrog),
         );
-        model.bodies.push(body("second", [40, 35, 1], copper()));
+        model.bodies.push(body("second", [12, 9, 13], copper()));
         let reference = Reference::new(&model).unwrap();
         let momentum = vec![jstsph_tensor::Vec3::zeros(); reference.position.len()];
         let state = State::undeformed(&reference, momentum);

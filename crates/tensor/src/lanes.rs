@@ -27,7 +27,10 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 use crate::Mat3;
 
+mod tensor;
+
 pub use pulp::{Simd, WithSimd};
+pub use tensor::{LaneTensor, PlaneLanes, TensorLanes};
 
 /// Points that are worked on together. Enough that what is written number by number has left the
 /// store buffer when it is read as vectors, few enough that a dozen tiles stay in the first cache.
@@ -71,6 +74,13 @@ impl<S: Simd> Lanes<S> {
     #[inline(always)]
     pub fn store(self, tile: &mut [f64; TILE], pack: usize) {
         S::as_mut_simd_f64s(tile).0[pack] = self.values;
+    }
+
+    /// Zero in every lane.
+    #[inline(always)]
+    #[must_use]
+    pub fn zero(self) -> Self {
+        Self::splat(self.simd, 0.0)
     }
 
     /// 1/x.
@@ -282,64 +292,44 @@ impl TensorTile {
         }
     }
 
-    /// The `pack`-th vectors of all components.
-    #[inline(always)]
-    #[must_use]
-    pub fn load<S: Simd>(&self, simd: S, pack: usize) -> TensorLanes<S> {
-        TensorLanes(load_all(simd, &self.0, pack))
-    }
-
-    /// Writes the `pack`-th vectors of all components.
-    #[inline(always)]
-    pub fn store<S: Simd>(&mut self, lanes: &TensorLanes<S>, pack: usize) {
-        store_all(&lanes.0, &mut self.0, pack);
-    }
-}
-
-/// One tensor for each of some neighbouring points; components as in [`TensorTile`].
-#[derive(Clone, Copy, Debug)]
-pub struct TensorLanes<S: Simd>(pub [Lanes<S>; 9]);
-
-impl<S: Simd> TensorLanes<S> {
-    /// A + B s.
-    #[inline(always)]
-    #[must_use]
-    pub fn plus(&self, other: &Self, factor: f64) -> Self {
-        let mut sum = *self;
-        for k in 0..9 {
-            sum.0[k] = self.0[k] + other.0[k] * factor;
+    /// Reads [`TILE`] tensors of plane strain: only the components 11, 21, 12, 22 and 33, the others of
+    /// the tile stay.
+    ///
+    /// # Panics
+    /// If there are fewer: a bug in the caller.
+    #[inline(never)]
+    pub fn read_plane(&mut self, tensors: &[Mat3]) {
+        let tensors = &tensors[..TILE];
+        for (i, tensor) in tensors.iter().enumerate() {
+            // Written so that something that is not a number passes: it is found by its other components.
+            debug_assert!(
+                ![tensor.m13, tensor.m23, tensor.m31, tensor.m32]
+                    .iter()
+                    .any(|component| component.abs() > 0.0),
+                "not plane: {tensor}"
+            );
+            self.0[0][i] = tensor.m11;
+            self.0[1][i] = tensor.m21;
+            self.0[3][i] = tensor.m12;
+            self.0[4][i] = tensor.m22;
+            self.0[8][i] = tensor.m33;
         }
-        sum
     }
 
-    /// A : B, in the order of [`double_dot`](crate::double_dot).
-    #[inline(always)]
-    #[must_use]
-    pub fn double_dot(&self, other: &Self) -> Lanes<S> {
-        let [a11, a21, a31, a12, a22, a32, a13, a23, a33] = self.0;
-        let [b11, b21, b31, b12, b22, b32, b13, b23, b33] = other.0;
-        (a11 * b11 + a21 * b21 + a31 * b31)
-            + (a12 * b12 + a22 * b22 + a32 * b32)
-            + (a13 * b13 + a23 * b23 + a33 * b33)
-    }
-
-    /// A × B, in the order of [`tensor_cross`](crate::tensor_cross).
-    #[inline(always)]
-    #[must_use]
-    pub fn cross(&self, other: &Self) -> Self {
-        let [a11, a21, a31, a12, a22, a32, a13, a23, a33] = self.0;
-        let [b11, b21, b31, b12, b22, b32, b13, b23, b33] = other.0;
-        Self([
-            a22 * b33 - a23 * b32 + a33 * b22 - a32 * b23,
-            a13 * b32 - a12 * b33 + a32 * b13 - a33 * b12,
-            a12 * b23 - a13 * b22 + a23 * b12 - a22 * b13,
-            a23 * b31 - a21 * b33 + a31 * b23 - a33 * b21,
-            a33 * b11 - a31 * b13 + a11 * b33 - a13 * b31,
-            a13 * b21 - a11 * b23 + a21 * b13 - a23 * b11,
-            a21 * b32 - a22 * b31 + a32 * b21 - a31 * b22,
-            a31 * b12 - a32 * b11 + a12 * b31 - a11 * b32,
-            a11 * b22 - a12 * b21 + a22 * b11 - a21 * b12,
-        ])
+    /// Writes the components of plane strain of [`TILE`] tensors; their others stay.
+    ///
+    /// # Panics
+    /// If there are fewer: a bug in the caller.
+    #[inline(never)]
+    pub fn write_plane(&self, tensors: &mut [Mat3]) {
+        let tensors = &mut tensors[..TILE];
+        for (i, tensor) in tensors.iter_mut().enumerate() {
+            tensor.m11 = self.0[0][i];
+            tensor.m21 = self.0[1][i];
+            tensor.m12 = self.0[3][i];
+            tensor.m22 = self.0[4][i];
+            tensor.m33 = self.0[8][i];
+        }
     }
 }
 
@@ -353,44 +343,82 @@ mod tests {
         b: &'a TensorTile,
         cross: &'a mut TensorTile,
         dot: &'a mut [f64; TILE],
+        plane: bool,
     }
 
     impl WithSimd for Products<'_> {
         type Output = ();
         #[inline(always)]
-        fn with_simd<S: Simd>(self, simd: S) {
+        fn with_simd<S: Simd>(mut self, simd: S) {
             for pack in 0..TILE / S::F64_LANES {
-                let (a, b) = (self.a.load(simd, pack), self.b.load(simd, pack));
-                self.cross.store(&a.cross(&b), pack);
-                a.double_dot(&b).store(self.dot, pack);
+                if self.plane {
+                    self.products::<S, PlaneLanes<S>>(simd, pack);
+                } else {
+                    self.products::<S, TensorLanes<S>>(simd, pack);
+                }
             }
         }
     }
 
-    #[test]
-    fn lanes_have_the_bits_of_the_scalar_formulas() {
+    impl Products<'_> {
+        #[inline(always)]
+        fn products<S: Simd, T: LaneTensor<S>>(&mut self, simd: S, pack: usize) {
+            let (a, b) = (T::load(simd, self.a, pack), T::load(simd, self.b, pack));
+            a.cross(&b).store(self.cross, pack);
+            a.double_dot(&b).store(self.dot, pack);
+        }
+    }
+
+    fn assert_bits_of_scalar_formulas(plane: bool) {
         let sample = |i: usize, phase: f64| {
-            Mat3::from_fn(|r, c| (1.7 * i as f64 + 0.9 * (r + 3 * c) as f64 + phase).sin())
+            Mat3::from_fn(|r, c| {
+                let entry = (1.7 * i as f64 + 0.9 * (r + 3 * c) as f64 + phase).sin();
+                if plane && (r == 2) != (c == 2) {
+                    0.0
+                } else {
+                    entry
+                }
+            })
         };
         let a: Vec<_> = (0..TILE).map(|i| sample(i, 0.1)).collect();
         let b: Vec<_> = (0..TILE).map(|i| sample(i, 2.3)).collect();
         let (mut at, mut bt, mut cross) = (TensorTile::ZERO, TensorTile::ZERO, TensorTile::ZERO);
-        at.read(&a);
-        bt.read(&b);
+        for (tile, tensors) in [(&mut at, &a), (&mut bt, &b)] {
+            if plane {
+                tile.read_plane(tensors);
+            } else {
+                tile.read(tensors);
+            }
+        }
         let mut dot = [0.0; TILE];
         let products = Products {
             a: &at,
             b: &bt,
             cross: &mut cross,
             dot: &mut dot,
+            plane,
         };
         vectorised(products);
         let mut crossed = vec![Mat3::zeros(); TILE];
-        cross.write(&mut crossed);
+        if plane {
+            cross.write_plane(&mut crossed);
+        } else {
+            cross.write(&mut crossed);
+        }
         for i in 0..TILE {
             assert_eq!(crossed[i], tensor_cross(&a[i], &b[i]));
             assert_eq!(dot[i], double_dot(&a[i], &b[i]));
         }
+    }
+
+    #[test]
+    fn lanes_have_the_bits_of_the_scalar_formulas() {
+        assert_bits_of_scalar_formulas(false);
+    }
+
+    #[test]
+    fn lanes_of_plane_strain_have_the_bits_of_the_scalar_formulas() {
+        assert_bits_of_scalar_formulas(true);
     }
 
     #[test]

@@ -453,6 +453,7 @@ pub(super) fn example_thermal() -> Thermal {
     }
 }
 
+mod algebra;
 mod flow;
 mod tile;
 

@@ -1,7 +1,9 @@
 //! F, H and the change of volume of points over one step with constant G: point by point, and the
 //! same for many points at once.
 
-use jstsph_tensor::lanes::{Simd, TILE, TensorTile, WithSimd, vectorised};
+use jstsph_tensor::lanes::{
+    LaneTensor, PlaneLanes, Simd, TILE, TensorLanes, TensorTile, WithSimd, vectorised,
+};
 use jstsph_tensor::{Mat3, double_dot, tensor_cross};
 
 /// A step of the leapfrog.
@@ -9,6 +11,8 @@ use jstsph_tensor::{Mat3, double_dot, tensor_cross};
 pub(super) struct Drift {
     /// Whether the change of volume is that of ln J, which bonds have, or that of J.
     pub(super) bonds: bool,
+    /// Whether nothing happens out of the plane.
+    pub(super) plane: bool,
     /// s.
     pub(super) dt: f64,
 }
@@ -61,27 +65,38 @@ struct Tiles<'a> {
 impl WithSimd for Tiles<'_> {
     type Output = ();
 
-    /// The formulas of `advance_point`, in the same order.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Drift { bonds, dt } = self.step;
+        if self.step.plane {
+            self.advance::<S, PlaneLanes<S>>(simd);
+        } else {
+            self.advance::<S, TensorLanes<S>>(simd);
+        }
+    }
+}
+
+impl Tiles<'_> {
+    /// The formulas of `advance_point`, in the same order.
+    #[inline(always)]
+    fn advance<S: Simd, T: LaneTensor<S>>(self, simd: S) {
+        let Drift { bonds, dt, .. } = self.step;
         let (mut g, mut f, mut h) = (TensorTile::ZERO, TensorTile::ZERO, TensorTile::ZERO);
         let mut change = [0.0; TILE];
         for start in (0..self.g.len()).step_by(TILE) {
             let range = start..start + TILE;
-            g.read(&self.g[range.clone()]);
-            f.read(&self.f[range.clone()]);
-            h.read(&self.h[range.clone()]);
+            T::read(&mut g, &self.g[range.clone()]);
+            T::read(&mut f, &self.f[range.clone()]);
+            T::read(&mut h, &self.h[range.clone()]);
             for pack in 0..TILE / S::F64_LANES {
-                let rate = g.load(simd, pack);
-                let begin = f.load(simd, pack);
-                let start = h.load(simd, pack);
+                let rate = T::load(simd, &g, pack);
+                let begin = T::load(simd, &f, pack);
+                let start = T::load(simd, &h, pack);
                 let quarter = begin.plus(&rate, 0.25 * dt);
                 let half = begin.plus(&rate, 0.5 * dt);
                 let middle = start.plus(&quarter.cross(&rate), 0.5 * dt);
                 let end = start.plus(&half.cross(&rate), dt);
-                f.store(&begin.plus(&rate, dt), pack);
-                h.store(&end, pack);
+                begin.plus(&rate, dt).store(&mut f, pack);
+                end.store(&mut h, pack);
                 let grown = if bonds {
                     (middle.double_dot(&rate) * (3.0 * dt)).over(middle.double_dot(&half))
                 } else {
@@ -90,8 +105,8 @@ impl WithSimd for Tiles<'_> {
                 };
                 grown.store(&mut change, pack);
             }
-            f.write(&mut self.f[range.clone()]);
-            h.write(&mut self.h[range.clone()]);
+            T::write(&f, &mut self.f[range.clone()]);
+            T::write(&h, &mut self.h[range.clone()]);
             self.change[range].copy_from_slice(&change);
         }
     }
@@ -106,14 +121,29 @@ mod tests {
     fn many_points_at_once_have_the_bits_of_single_points() {
         let mut random = Random(11);
         let count = 3 * TILE + 5;
-        let mut tensors = |size: f64, mean: Mat3| -> Vec<Mat3> {
-            (0..count).map(|_| mean + random.tensor() * size).collect()
+        let mut tensors = |size: f64, mean: Mat3, plane: bool| -> Vec<Mat3> {
+            let kept = |t: Mat3| {
+                Mat3::from_fn(|r, c| {
+                    if plane && (r == 2) != (c == 2) {
+                        0.0
+                    } else {
+                        t[(r, c)]
+                    }
+                })
+            };
+            (0..count)
+                .map(|_| kept(mean + random.tensor() * size))
+                .collect()
         };
-        let g = tensors(1e4, Mat3::zeros());
-        let f = tensors(0.3, Mat3::identity());
-        let h = tensors(0.3, Mat3::identity());
-        for bonds in [true, false] {
-            let step = Drift { bonds, dt: 1e-5 };
+        for (bonds, plane) in [(true, false), (false, false), (true, true), (false, true)] {
+            let g = tensors(1e4, Mat3::zeros(), plane);
+            let f = tensors(0.3, Mat3::identity(), plane);
+            let h = tensors(0.3, Mat3::identity(), plane);
+            let step = Drift {
+                bonds,
+                plane,
+                dt: 1e-5,
+            };
             let (mut many_f, mut many_h, mut change) = (f.clone(), h.clone(), vec![0.0; count]);
             step.advance(&g, &mut many_f, &mut many_h, &mut change);
             for q in 0..count {

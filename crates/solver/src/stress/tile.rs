@@ -3,7 +3,8 @@
 use jstsph_material::{KinematicsTile, Material, ResponseTile};
 use jstsph_tensor::Mat3;
 use jstsph_tensor::lanes::{
-    Lanes, Simd, TILE, TensorLanes, TensorTile, WithSimd, load_all, vectorised,
+    LaneTensor, Lanes, PlaneLanes, Simd, TILE, TensorLanes, TensorTile, WithSimd, load_all,
+    vectorised,
 };
 
 use super::PointPass;
@@ -36,7 +37,10 @@ impl<M: Material> PointPass<'_, M> {
     ) {
         let count = out.scaled_stress.len();
         let mut buffers = Buffers {
-            now: KinematicsTile::new(self.points.dt),
+            now: KinematicsTile {
+                plane: self.points.plane,
+                ..KinematicsTile::new(self.points.dt)
+            },
             response: ResponseTile::ZERO,
             cofactor: TensorTile::ZERO,
             pressure: [0.0; TILE],
@@ -50,7 +54,12 @@ impl<M: Material> PointPass<'_, M> {
             let candidate = &mut out.candidate[start..end];
             let history = &committed[first..offset + end];
             if end - start == TILE && self.tile(first, history, candidate, &mut buffers) {
-                buffers.stress.write(&mut out.scaled_stress[start..end]);
+                let stress = &mut out.scaled_stress[start..end];
+                if self.points.plane {
+                    buffers.stress.write_plane(stress);
+                } else {
+                    buffers.stress.write(stress);
+                }
                 out.plastic_work[start..end].copy_from_slice(&buffers.response.plastic_work);
             } else {
                 for k in 0..end - start {
@@ -85,8 +94,15 @@ impl<M: Material> PointPass<'_, M> {
             volume,
             stress,
         } = buffers;
-        now.deformation_gradient
-            .read(&points.deformation_gradient[range.clone()]);
+        let gradients = &points.deformation_gradient[range.clone()];
+        let cofactors = &points.cofactor[range.clone()];
+        if points.plane {
+            now.deformation_gradient.read_plane(gradients);
+            cofactor.read_plane(cofactors);
+        } else {
+            now.deformation_gradient.read(gradients);
+            cofactor.read(cofactors);
+        }
         for i in 0..TILE {
             now.jacobian[i] = points.jacobian(first + i);
             now.temperature[i] = points.temperature(first + i);
@@ -98,7 +114,6 @@ impl<M: Material> PointPass<'_, M> {
             let (jacobian, temperature) = (now.jacobian[i], now.temperature[i]);
             pressure[i] = self.pressure(first + i, jacobian, temperature, &candidate[i]);
         }
-        cofactor.read(&points.cofactor[range.clone()]);
         volume.copy_from_slice(&points.volume[range]);
         vectorised(Piola {
             now,
@@ -129,27 +144,32 @@ impl WithSimd for Piola<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
+        if self.now.plane {
+            self.evaluate::<S, PlaneLanes<S>>(simd);
+        } else {
+            self.evaluate::<S, TensorLanes<S>>(simd);
+        }
+    }
+}
+
+impl Piola<'_> {
+    #[inline(always)]
+    fn evaluate<S: Simd, T: LaneTensor<S>>(self, simd: S) {
         for pack in 0..TILE / S::F64_LANES {
-            let h = self.cofactor.load(simd, pack);
+            let h = T::load(simd, self.cofactor, pack);
             let jacobian = if self.at_particles {
                 Lanes::load(simd, &self.now.jacobian, pack)
             } else {
-                let f = self.now.deformation_gradient.load(simd, pack);
+                let f = T::load(simd, &self.now.deformation_gradient, pack);
                 h.double_dot(&f).over(Lanes::splat(simd, 3.0))
             };
             let factor = Lanes::load(simd, self.volume, pack).over(jacobian);
             let pressure = Lanes::load(simd, self.pressure, pack);
-            let stress = load_all(simd, &self.response.kirchhoff_stress, pack);
-            let [t11, t22, t33, t12, t13, t23] = stress;
-            let (t11, t22, t33) = (t11 + pressure, t22 + pressure, t33 + pressure);
-            let rows = [[t11, t12, t13], [t12, t22, t23], [t13, t23, t33]];
-            let mut stress = h.0;
-            for k in 0..9 {
-                let [a, b, c] = rows[k % 3];
-                let column = k - k % 3;
-                stress[k] = (a * h.0[column] + b * h.0[column + 1] + c * h.0[column + 2]) * factor;
+            let mut stress = load_all(simd, &self.response.kirchhoff_stress, pack);
+            for k in 0..3 {
+                stress[k] = stress[k] + pressure;
             }
-            self.stress.store(&TensorLanes(stress), pack);
+            h.times_symmetric(&stress, factor).store(self.stress, pack);
         }
     }
 }

@@ -1,7 +1,9 @@
 //! Upper bounds of 1/λ², for many points at once.
 
 use jstsph_tensor::Mat3;
-use jstsph_tensor::lanes::{Lanes, Simd, TILE, TensorTile, WithSimd, vectorised};
+use jstsph_tensor::lanes::{
+    LaneTensor, Lanes, PlaneLanes, Simd, TILE, TensorLanes, TensorTile, WithSimd, times, vectorised,
+};
 
 use super::inverse_cauchy_green;
 
@@ -12,15 +14,23 @@ use super::inverse_cauchy_green;
 /// ```
 ///
 /// sharp where two of the values are equal and the third is larger. Not finite where A is not.
-pub(super) fn evaluate(gradients: &[Mat3], cofactors: &[Mat3], bounds: &mut [f64]) {
+///
+/// With `plane`, nothing is out of the plane but the components 33.
+pub(super) fn evaluate(plane: bool, gradients: &[Mat3], cofactors: &[Mat3], bounds: &mut [f64]) {
     let tiled = gradients.len() - gradients.len() % TILE;
     let (mut f, mut h) = (TensorTile::ZERO, TensorTile::ZERO);
     for start in (0..tiled).step_by(TILE) {
         let range = start..start + TILE;
-        f.read(&gradients[range.clone()]);
-        h.read(&cofactors[range.clone()]);
+        if plane {
+            f.read_plane(&gradients[range.clone()]);
+            h.read_plane(&cofactors[range.clone()]);
+        } else {
+            f.read(&gradients[range.clone()]);
+            h.read(&cofactors[range.clone()]);
+        }
         let mut tile = [0.0; TILE];
         vectorised(Tile {
+            plane,
             gradient: &f,
             cofactor: &h,
             bound: &mut tile,
@@ -36,6 +46,7 @@ pub(super) fn evaluate(gradients: &[Mat3], cofactors: &[Mat3], bounds: &mut [f64
 }
 
 struct Tile<'a> {
+    plane: bool,
     gradient: &'a TensorTile,
     cofactor: &'a TensorTile,
     bound: &'a mut [f64; TILE],
@@ -46,18 +57,23 @@ impl WithSimd for Tile<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
+        if self.plane {
+            self.evaluate::<S, PlaneLanes<S>>(simd);
+        } else {
+            self.evaluate::<S, TensorLanes<S>>(simd);
+        }
+    }
+}
+
+impl Tile<'_> {
+    #[inline(always)]
+    fn evaluate<S: Simd, T: LaneTensor<S>>(self, simd: S) {
         for pack in 0..TILE / S::F64_LANES {
-            let h = self.cofactor.load(simd, pack);
-            let f = self.gradient.load(simd, pack);
+            let h = T::load(simd, self.cofactor, pack);
+            let f = T::load(simd, self.gradient, pack);
             let determinant = h.double_dot(&f) * (1.0 / 3.0);
             let scale = (determinant * determinant).inverse();
-            let [h11, h21, h31, h12, h22, h32, h13, h23, h33] = h.0;
-            let a11 = (h11 * h11 + h21 * h21 + h31 * h31) * scale;
-            let a22 = (h12 * h12 + h22 * h22 + h32 * h32) * scale;
-            let a33 = (h13 * h13 + h23 * h23 + h33 * h33) * scale;
-            let a12 = (h11 * h12 + h21 * h22 + h31 * h32) * scale;
-            let a13 = (h11 * h13 + h21 * h23 + h31 * h33) * scale;
-            let a23 = (h12 * h13 + h22 * h23 + h32 * h33) * scale;
+            let [a11, a22, a33, a12, a13, a23] = times(&h.gram(), scale);
             let mean = (a11 + a22 + a33) * (1.0 / 3.0);
             let (d1, d2, d3) = (a11 - mean, a22 - mean, a33 - mean);
             let off: Lanes<S> = a12 * a12 + a13 * a13 + a23 * a23;
@@ -84,12 +100,28 @@ mod tests {
         gradients[TILE + 3] = squeezed;
         let cofactors: Vec<Mat3> = gradients.iter().map(cofactor).collect();
         let mut bounds = vec![0.0; gradients.len()];
-        evaluate(&gradients, &cofactors, &mut bounds);
+        evaluate(false, &gradients, &cofactors, &mut bounds);
         for q in 0..gradients.len() {
             let value = largest_eigenvalue(&inverse_cauchy_green(&gradients[q], &cofactors[q]));
             assert!(bounds[q] * (1.0 + 1e-9) >= value && bounds[q] < 2.0 * value);
         }
         assert!((bounds[3] / 4.0 - 1.0).abs() < 1e-14);
         assert!((bounds[TILE + 3] / 4.0 - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn plane_strain_has_the_bits_of_general_strain() {
+        let mut random = Random(31);
+        let gradients: Vec<Mat3> = (0..TILE)
+            .map(|_| {
+                let f = Mat3::identity() + random.tensor() * 0.3;
+                Mat3::new(f.m11, f.m12, 0.0, f.m21, f.m22, 0.0, 0.0, 0.0, 1.0)
+            })
+            .collect();
+        let cofactors: Vec<Mat3> = gradients.iter().map(cofactor).collect();
+        let (mut plane, mut general) = ([0.0; TILE], [0.0; TILE]);
+        evaluate(true, &gradients, &cofactors, &mut plane);
+        evaluate(false, &gradients, &cofactors, &mut general);
+        assert_eq!(plane, general);
     }
 }
