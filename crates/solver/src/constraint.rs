@@ -16,6 +16,9 @@ pub(crate) const CONTACT_TOLERANCE: f64 = 1e-6;
 /// Penetration above which a particle is put back, as a fraction of the spacing.
 const LARGEST_PENETRATION: f64 = 1e-4;
 
+/// Above one by more than the rounding of a norm and a product.
+const REACH_MARGIN: f64 = 1.0 + 1e-12;
+
 /// Prescribed velocities.
 #[derive(Clone, Debug)]
 pub(crate) struct Prescribed {
@@ -169,6 +172,7 @@ impl Obstacles {
             *velocity = self.velocity(o, time + 0.5 * dt);
         }
         let slots = self.parts.len();
+        let speeds = velocities.map(|velocity| velocity.norm());
         for body in &reference.bodies {
             let range = body.particles.clone();
             let step = ContactStep {
@@ -184,7 +188,23 @@ impl Obstacles {
                 &mut state.momentum[range.clone()],
                 &mut ledger.impulse[range.clone()],
             );
+            // At least the travel of a particle relative to a wall: see `Wall::resolve_cached`.
+            let per_momentum = dt / body.density * REACH_MARGIN;
             parallel::for_each_with_group(particles, contact, slots, |a, x, p, impulse, group| {
+                if stage.begins() {
+                    for slot in group.iter_mut() {
+                        slot.given = Exchange::default();
+                    }
+                }
+                // Most particles are far from all walls, which takes one root to see.
+                let travel = p.norm() * per_momentum;
+                let far = |(slot, (o, _)): (&ContactSlot, &(usize, usize))| {
+                    let reach = step.tolerance + travel + speeds[*o] * dt * REACH_MARGIN;
+                    !slot.cache.needs_check(&(*x - self.displacement[*o]), reach)
+                };
+                if group.iter().zip(&self.parts).all(far) {
+                    return;
+                }
                 let mut particle = Particle {
                     x,
                     p,
@@ -194,9 +214,6 @@ impl Obstacles {
                 };
                 let mut rubbed = false;
                 for (slot, part) in group.iter_mut().zip(&self.parts) {
-                    if stage.begins() {
-                        slot.given = Exchange::default();
-                    }
                     let wall = self.wall(*part, &velocities);
                     let normal = particle.meet(&wall, slot, &step);
                     rubbed |= particle.rub(&wall, slot, normal, &step);
