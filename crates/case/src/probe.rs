@@ -1,5 +1,7 @@
 //! `[[probe]]`: numbers read off the running simulation.
 
+mod edge;
+
 use jstsph_geometry::{Dimension, Shape, face_areas};
 use jstsph_solver::{EdgePart, ModelBody, Probe, ProbeKind};
 use jstsph_tensor::Vec3;
@@ -39,11 +41,16 @@ pub(crate) fn read_probe(
             axis: part.choice("axis", AXES)?,
             point: point_or_origin(&mut part, dimension)?,
         },
-        "edge_radius" => ProbeKind::EdgeRadius {
-            edge: edge(&mut part, bodies, dimension)?,
-            axis: part.choice("axis", AXES)?,
-            point: point_or_origin(&mut part, dimension)?,
-        },
+        "edge_radius" => {
+            let axis = part.choice("axis", AXES)?;
+            let point = point_or_origin(&mut part, dimension)?;
+            let edge = if part.has("radius") {
+                cut_edge(&mut part, bodies, dimension, (axis, point))?
+            } else {
+                edge(&mut part, bodies, dimension)?
+            };
+            ProbeKind::EdgeRadius { edge, axis, point }
+        }
         "statistic" => ProbeKind::Statistic {
             particles: particles(&mut part, bodies, dimension)?,
             field: part.choice("field", schema::FIELDS)?,
@@ -106,8 +113,40 @@ fn edge(
     if edge.is_empty() {
         return Err(part.problem(
             "where",
-            "an edge radius needs particles on the rim of a disc or the side of a cylinder",
+            "an edge radius needs particles on the rim of a disc or the side of a cylinder, or `radius`",
         ));
+    }
+    Ok(edge)
+}
+
+/// The edge of a body that was cut out of a disc or cylinder around a line.
+fn cut_edge(
+    part: &mut Section<'_>,
+    bodies: &[ModelBody],
+    dimension: Dimension,
+    (axis, point): (usize, Vec3),
+) -> Result<Vec<EdgePart>, Problem> {
+    let radius = part.number("radius")?;
+    let selected = read_where(part, bodies, dimension)?;
+    let first = first_particle(part, bodies, selected.body)?;
+    let body = &bodies[selected.body].body;
+    let nodes: Vec<(u32, Vec3)> = selected
+        .particles
+        .iter()
+        .map(|&node| (node, body.positions[node as usize]))
+        .collect();
+    let mut edge = edge::parts(&nodes, body.spacing, axis, &point, radius);
+    if edge.is_empty() {
+        return Err(part.problem(
+            "radius",
+            format!(
+                "no selected particle lies within one and a half spacings, {:.4e} m, inside of this radius",
+                1.5 * body.spacing
+            ),
+        ));
+    }
+    for part in &mut edge {
+        part.particle += first;
     }
     Ok(edge)
 }

@@ -305,7 +305,7 @@ pub const PROBE: &[Key] = &[
     ),
     key(
         "edge_radius",
-        Table(RADIUS),
+        Table(EDGE_RADIUS),
         Optional,
         "mean radius of the edge of a disc or cylinder where a selection meets it",
     ),
@@ -340,6 +340,19 @@ pub(crate) const RADIUS: &[Key] = &[
     key("where", WHERE, Required, "particles"),
     key("axis", AXIS, Default("\"z\""), "direction of the line"),
     key("point", PLACE, Derived("the origin"), "a point of the line"),
+];
+
+/// An edge radius probe.
+pub(crate) const EDGE_RADIUS: &[Key] = &[
+    key("where", WHERE, Required, "particles"),
+    key("axis", AXIS, Default("\"z\""), "direction of the line"),
+    key("point", PLACE, Derived("the origin"), "a point of the line"),
+    key(
+        "radius",
+        LENGTH,
+        Optional,
+        "radius of the undeformed edge, for a body cut out of a disc or cylinder, such as a quarter of one",
+    ),
 ];
 
 /// A statistic probe.
