@@ -57,7 +57,7 @@ impl Figure {
     /// [`OutputError::NotFinite`], [`OutputError::CellPoint`].
     pub fn particles(plot: &ParticlePlot) -> Result<Self, OutputError> {
         Ok(Self {
-            canvas: particles::draw("", std::slice::from_ref(plot))?,
+            canvas: particles::draw("", 1, std::slice::from_ref(plot))?,
         })
     }
 
@@ -68,7 +68,21 @@ impl Figure {
     /// Those of [`Self::particles`].
     pub fn panels(heading: &str, plots: &[ParticlePlot]) -> Result<Self, OutputError> {
         Ok(Self {
-            canvas: particles::draw(heading, plots)?,
+            canvas: particles::draw(heading, plots.len(), plots)?,
+        })
+    }
+
+    /// The same in rows of `columns` bodies each.
+    ///
+    /// # Errors
+    /// Those of [`Self::particles`].
+    pub fn grid(
+        heading: &str,
+        columns: usize,
+        plots: &[ParticlePlot],
+    ) -> Result<Self, OutputError> {
+        Ok(Self {
+            canvas: particles::draw(heading, columns, plots)?,
         })
     }
 

@@ -153,14 +153,20 @@ fn draw_path(
             width,
             line_cap: LineCap::Butt,
             line_join: LineJoin::Round,
-            dash: stroke
-                .dashed
-                .then(|| StrokeDash::new(vec![4.0 * width, 2.5 * width], 0.0))
-                .flatten(),
+            dash: dash(stroke),
             ..tiny_skia::Stroke::default()
         };
         pixels.stroke_path(&path, &paint(stroke.colour), &style, scale, None);
     }
+}
+
+fn dash(stroke: Stroke) -> Option<StrokeDash> {
+    let lengths = stroke.dash.pattern().iter();
+    let lengths: Vec<f32> = lengths
+        .map(|length| (length * stroke.width) as f32)
+        .collect();
+    // None for an empty list.
+    StrokeDash::new(lengths, 0.0)
 }
 
 fn paint(colour: Colour) -> Paint<'static> {
