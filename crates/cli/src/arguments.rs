@@ -162,6 +162,9 @@ pub(crate) struct PlotOptions {
     /// Write every frame of one run to an animation, .gif or .png (APNG)
     #[arg(long, value_name = "FILE", conflicts_with_all = ["history", "times", "output"])]
     pub(crate) animate: Option<PathBuf>,
+    /// Pixels per inch of a PNG file: less for small files, 300 or more for print [default: 192]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(24..=1200), conflicts_with = "animate")]
+    pub(crate) dpi: Option<u16>,
     /// File to write, .png or .svg [default: OUT_DIR/NAME-TIME.png]
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,

@@ -103,7 +103,10 @@ pub(crate) fn run(options: &PlotOptions, console: &mut Console<'_>) -> Result<u8
         .output
         .clone()
         .unwrap_or_else(|| options.results[0].join(name));
-    save(&figure, &path)?;
+    match (options.dpi, format(&path)?) {
+        (Some(dpi), Format::Png) => figure.save_png_at(&path, dpi).map_err(CliError::Picture)?,
+        _ => save(&figure, &path)?,
+    }
     console.print(format_args!("wrote {}\n", path.display()));
     Ok(0)
 }

@@ -238,6 +238,12 @@ fn runs_are_compared_side_by_side_and_in_one_diagram() {
     let outcome = place.jstsph("jstsph plot @/r @/s --history length --against steps -o @/n.svg");
     assert_eq!(outcome.code, 0, "{}", outcome.err);
     assert!(place.text("n.svg").contains(">steps<"));
+    for (dpi, name) in [(96, "small.png"), (192, "usual.png")] {
+        let outcome = place.jstsph(&format!("jstsph plot @/r --dpi {dpi} -o @/{name}"));
+        assert_eq!(outcome.code, 0, "{}", outcome.err);
+    }
+    let [small, usual] = ["small.png", "usual.png"].map(|name| png_size(&place.bytes(name)));
+    assert_eq!((2 * small.0, 2 * small.1), usual);
     let outcome = place.jstsph("jstsph plot @/r @/s --label one");
     assert_eq!(outcome.code, 2);
     assert!(
