@@ -108,6 +108,51 @@ fn links_lead_to_files_and_headings() {
     assert!(all.is_empty(), "{}", all.join("\n"));
 }
 
+/// Messages quoted in the first column of the tables of a page, cut where they have `...`.
+fn quoted_messages(text: &str) -> Vec<String> {
+    let mut is_table = false;
+    let mut found = Vec::new();
+    for line in text.lines() {
+        let heads = ["| message |", "| warning |"];
+        is_table =
+            line.starts_with('|') && (is_table || heads.iter().any(|head| line.starts_with(head)));
+        let first = line.split('|').nth(1).unwrap_or_default();
+        for code in first.split('`').skip(1).step_by(2).filter(|_| is_table) {
+            let parts = code.split("...").map(|part| part.trim().to_owned());
+            found.extend(parts.filter(|part| part.len() > 2));
+        }
+    }
+    found
+}
+
+/// The sources as one text, with their texts as the program prints them.
+fn sources() -> String {
+    let mut all = String::new();
+    for path in files_below(&root().join("crates"), &["rs"]) {
+        // A backslash at the end of a line takes the spaces of the next one away.
+        let mut lines = read(&path);
+        lines.push('\n');
+        let joined = lines.split("\\\n").map(str::trim_start);
+        all += &joined.collect::<String>().replace("\\\"", "\"");
+    }
+    all
+}
+
+#[test]
+fn messages_of_the_troubleshooting_page_are_those_of_the_program() {
+    let page = read(&root().join("docs/guide/troubleshooting.md"));
+    // What the operating system says.
+    let foreign = ["No such file", "Permission denied"];
+    let sources = sources();
+    let messages = quoted_messages(&page);
+    assert!(messages.len() > 50, "{messages:?}");
+    let missing: Vec<&String> = messages
+        .iter()
+        .filter(|part| !foreign.contains(&part.as_str()) && !sources.contains(part.as_str()))
+        .collect();
+    assert!(missing.is_empty(), "nothing prints {missing:#?}");
+}
+
 #[test]
 fn every_page_is_in_the_summary() {
     let docs = root().join("docs");

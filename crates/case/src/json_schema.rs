@@ -187,10 +187,13 @@ impl Writer {
 
     /// A plain number within its limits, or a text with a unit of this dimension.
     fn number(&mut self, measure: Measure, mut limits: Map<String, Value>) -> Value {
-        let text = self.define(
-            &format!("{}_as_text", measure.word()),
-            |_| json!({ "type": "string", "pattern": quantity_pattern(measure) }),
-        );
+        let text = self.define(&format!("{}_as_text", measure.word()), |_| {
+            json!({
+                "type": "string",
+                "pattern": quantity_pattern(measure),
+                "description": format!("as a text: {}", measure.description()),
+            })
+        });
         limits.insert("type".to_owned(), json!("number"));
         any_of([Value::Object(limits), text])
     }
@@ -286,9 +289,14 @@ fn exactly_one(names: &[&str]) -> Value {
     names.iter().map(required).collect()
 }
 
+/// Also describes the first of several choices, since completion in editors shows that of a choice.
 fn describe(value: &mut Value, text: &str) {
-    if let Some(object) = value.as_object_mut() {
-        object.insert("description".to_owned(), json!(text));
+    let Some(object) = value.as_object_mut() else {
+        return;
+    };
+    object.insert("description".to_owned(), json!(text));
+    if let Some(choice) = object.get_mut("anyOf").and_then(|of| of.get_mut(0)) {
+        describe(choice, text);
     }
 }
 

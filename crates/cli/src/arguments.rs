@@ -148,12 +148,23 @@ pub(crate) struct PlotOptions {
     pub(crate) times: Vec<String>,
     #[command(flatten)]
     pub(crate) look: Look,
-    /// Draw curves over time instead: energies, balance, time_step, probes, or columns of history.csv separated by commas
+    /// Draw curves over time instead: energies, balance, time_step, probes, or columns of history.csv, rate(COLUMN) and line probes separated by commas
     #[arg(long, value_name = "WHAT", conflicts_with_all = ["field", "times", "range", "view", "section"])]
     pub(crate) history: Option<String>,
+    #[command(flatten)]
+    pub(crate) curves: CurveLook,
+    /// Name of a run in the picture, one for each OUT_DIR in their order [default: the folders]
+    #[arg(long = "label", value_name = "NAME", conflicts_with = "animate")]
+    pub(crate) labels: Vec<String>,
+    /// Title of the picture, "" for none [default: the title of the case]
+    #[arg(long, value_name = "TEXT")]
+    pub(crate) title: Option<String>,
     /// Write every frame of one run to an animation, .gif or .png (APNG)
     #[arg(long, value_name = "FILE", conflicts_with_all = ["history", "times", "output"])]
     pub(crate) animate: Option<PathBuf>,
+    /// Pixels per inch of a PNG file: less for small files, 300 or more for print [default: 192]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(24..=1200), conflicts_with = "animate")]
+    pub(crate) dpi: Option<u16>,
     /// File to write, .png or .svg [default: OUT_DIR/NAME-TIME.png]
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
@@ -207,6 +218,53 @@ pub(crate) struct Look {
     /// Cut a solid through its middle
     #[arg(long)]
     pub(crate) section: bool,
+}
+
+/// How curves are shown.
+#[derive(Debug, Default, Args)]
+pub(crate) struct CurveLook {
+    /// Draw over this column of history.csv instead of over time
+    #[arg(long, value_name = "COLUMN", requires = "history")]
+    pub(crate) over: Option<String>,
+    /// Draw one point per run, against this number of summary.json: particles, wall_seconds, ...; runs of one label become a curve
+    #[arg(
+        long,
+        value_name = "NUMBER",
+        requires = "history",
+        conflicts_with = "over"
+    )]
+    pub(crate) against: Option<String>,
+    /// Time such as "35 ms" of the points of --against and of line probes [default: the last]
+    #[arg(long, value_name = "TIME", requires = "history", value_parser = time)]
+    pub(crate) at: Option<f64>,
+    /// Draw the running mean over this time, such as "0.5 ms"
+    #[arg(long, value_name = "TIME", requires = "history", value_parser = time)]
+    pub(crate) smooth: Option<f64>,
+    /// Logarithmic axes; points that are not positive are left out
+    #[arg(long, value_enum, value_name = "AXES", requires = "history")]
+    pub(crate) log: Option<LogAxes>,
+}
+
+/// Which axes are logarithmic.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum LogAxes {
+    /// The horizontal one
+    X,
+    /// The vertical one
+    Y,
+    /// Both
+    Xy,
+}
+
+fn time(text: &str) -> Result<f64, String> {
+    match parse_quantity(text) {
+        Ok((time, Measure::TIME)) => Ok(time),
+        Ok((_, measure)) => Err(format!("it is {}", measure.description())),
+        Err(UnitError::NoUnit { number, .. }) => number
+            .parse()
+            .map_err(|_| format!("`{number}` is not a number")),
+        Err(error) => Err(error.to_string()),
+    }
 }
 
 /// Plane of the picture, first axis to the right, second up.
@@ -280,6 +338,13 @@ mod tests {
         for wrong in ["1", "2,1", "a,b", "1 Mpa,2 MPa"] {
             assert!(value_range(wrong).is_err(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn times_have_a_unit_or_are_seconds() {
+        assert_eq!(time("0.5 ms"), Ok(0.5e-3));
+        assert_eq!(time("2e-3"), Ok(2e-3));
+        assert!(time("1 mm").unwrap_err().contains("length"));
     }
 
     #[test]

@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
 use jstsph_case::Case;
-use jstsph_solver::{Quadrature, Simulation};
+use jstsph_contact::Law;
+use jstsph_solver::{ModelObstacle, Quadrature, Simulation};
 
 use crate::arguments::CheckOptions;
 use crate::console::Console;
@@ -40,6 +41,23 @@ pub(crate) fn run(options: &CheckOptions, console: &mut Console<'_>) -> Result<u
         console.print(format_args!("wrote {}\n", path.display()));
     }
     Ok(0)
+}
+
+/// What an obstacle does to particles, in the words of case files.
+fn contact(obstacle: &ModelObstacle) -> String {
+    let mut words = match obstacle.obstacle.law {
+        Law::Inelastic { restitution: 0.0 } => "inelastic".to_owned(),
+        Law::Inelastic { restitution } => format!("inelastic, restitution {restitution}"),
+        Law::Reflection => "reflection".to_owned(),
+    };
+    match obstacle.obstacle.friction.coefficient {
+        0.0 => words += ", frictionless",
+        coefficient => words += &format!(", friction {coefficient}"),
+    }
+    if obstacle.velocity.is_some() {
+        words += ", moving";
+    }
+    words
 }
 
 #[expect(clippy::cast_precision_loss, reason = "counts are far below 2^53")]
@@ -91,8 +109,9 @@ fn describe(case: &Case, mut simulation: Simulation, threads: usize) -> String {
     for obstacle in &case.model.obstacles {
         let _ = writeln!(
             text,
-            "  obstacle {:<10} {:?}",
-            obstacle.obstacle.name, obstacle.obstacle.law
+            "  obstacle {:<10} {}",
+            obstacle.obstacle.name,
+            contact(obstacle)
         );
     }
     let stability = Stability::new(case, &simulation);

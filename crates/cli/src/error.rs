@@ -68,6 +68,14 @@ pub(crate) enum CliError {
         /// Number of folders.
         count: usize,
     },
+    /// Another number of names than of runs.
+    #[error("{given} of --label for {runs} folders; give one for each, in their order")]
+    Labels {
+        /// Names given.
+        given: usize,
+        /// Folders given.
+        runs: usize,
+    },
     /// A folder that no run has written.
     #[error("{} is not a folder of results: it has no case.toml; give the folder of a run", path.display())]
     NoResults {

@@ -1,12 +1,15 @@
 //! `jstsph plot`, and the pictures at the end of a run.
 
+mod against;
 pub(crate) mod body;
 mod curves;
+mod derived;
 pub(crate) mod diagrams;
 pub(crate) mod field;
 mod frames;
 pub(crate) mod history;
 pub(crate) mod lines;
+mod probes;
 mod setup;
 
 use std::path::{Path, PathBuf};
@@ -15,11 +18,11 @@ use jstsph_case::Case;
 use jstsph_output::plot::{Figure, Movie};
 use jstsph_output::read_table;
 
-use crate::arguments::{Look, PlotOptions, ViewName};
+use crate::arguments::{CurveLook, Look, PlotOptions, ViewName};
 use crate::console::Console;
 use crate::error::CliError;
 use body::Drawn;
-use curves::Told;
+use curves::{Told, Wanted};
 
 /// The field of the picture at the end of a run.
 const FIELD: &str = "equivalent_plastic_strain";
@@ -32,7 +35,7 @@ pub(crate) fn run(options: &PlotOptions, console: &mut Console<'_>) -> Result<u8
     if let Some(path) = &options.output {
         format(path)?;
     }
-    let labels = labels(&options.results);
+    let labels = labels(options)?;
     let cases = options
         .results
         .iter()
@@ -70,7 +73,13 @@ pub(crate) fn run(options: &PlotOptions, console: &mut Console<'_>) -> Result<u8
                     label: &labels[run],
                 })
                 .collect();
-            curves::figure(&runs, what)?
+            let wanted = Wanted {
+                what,
+                look: &options.curves,
+                title: options.title.as_deref(),
+                folders: &options.results,
+            };
+            curves::figure(&runs, wanted)?
         }
         None => {
             let chosen = options
@@ -86,7 +95,7 @@ pub(crate) fn run(options: &PlotOptions, console: &mut Console<'_>) -> Result<u8
                     label: &labels[run],
                 })
                 .collect();
-            let figure = body::figure(&runs, field, &options.look)?;
+            let figure = body::figure(&runs, field, &options.look, options.title.as_deref())?;
             (figure, format!("{field}-{}.png", names.join("-")))
         }
     };
@@ -94,13 +103,26 @@ pub(crate) fn run(options: &PlotOptions, console: &mut Console<'_>) -> Result<u8
         .output
         .clone()
         .unwrap_or_else(|| options.results[0].join(name));
-    save(&figure, &path)?;
+    match (options.dpi, format(&path)?) {
+        (Some(dpi), Format::Png) => figure.save_png_at(&path, dpi).map_err(CliError::Picture)?,
+        _ => save(&figure, &path)?,
+    }
     console.print(format_args!("wrote {}\n", path.display()));
     Ok(0)
 }
 
+/// Names of the runs: those that were given, or the folders.
+fn labels(options: &PlotOptions) -> Result<Vec<String>, CliError> {
+    let (given, runs) = (options.labels.len(), options.results.len());
+    match given {
+        0 => Ok(folder_labels(&options.results)),
+        _ if given == runs => Ok(options.labels.clone()),
+        _ => Err(CliError::Labels { given, runs }),
+    }
+}
+
 /// Names of runs by which they can be told apart; none for a single one.
-fn labels(folders: &[PathBuf]) -> Vec<String> {
+fn folder_labels(folders: &[PathBuf]) -> Vec<String> {
     if folders.len() == 1 {
         return vec![String::new()];
     }
@@ -203,7 +225,7 @@ fn one_body(
         chosen: &chosen,
         label: "",
     };
-    body::figure(&[drawn], field, look)
+    body::figure(&[drawn], field, look, None)
 }
 
 fn one_history(case: &Case, results: &Path, what: &str) -> Result<Figure, CliError> {
@@ -213,7 +235,13 @@ fn one_history(case: &Case, results: &Path, what: &str) -> Result<Figure, CliErr
         table: &table,
         label: "",
     };
-    curves::figure(&[told], what).map(|(figure, _)| figure)
+    let wanted = Wanted {
+        what,
+        look: &CurveLook::default(),
+        title: None,
+        folders: &[],
+    };
+    curves::figure(&[told], wanted).map(|(figure, _)| figure)
 }
 
 /// Draws the set-up of a case.
@@ -315,13 +343,13 @@ mod tests {
     fn runs_of_a_sweep_are_called_by_what_differs() {
         let folders = |names: [&str; 2]| names.map(PathBuf::from);
         assert_eq!(
-            labels(&folders(["s/n=3,cfl=0.9", "s/n=2,cfl=0.9"])),
+            folder_labels(&folders(["s/n=3,cfl=0.9", "s/n=2,cfl=0.9"])),
             ["3", "2"]
         );
-        assert_eq!(labels(&folders(["a/x", "b/x"])), ["a/x", "b/x"]);
-        assert_eq!(labels(&folders(["a/x", "a/y"])), ["x", "y"]);
+        assert_eq!(folder_labels(&folders(["a/x", "b/x"])), ["a/x", "b/x"]);
+        assert_eq!(folder_labels(&folders(["a/x", "a/y"])), ["x", "y"]);
         let long = "a-name-that-is-longer-than-a-panel";
-        let label = &labels(&folders([long, "x"]))[0];
+        let label = &folder_labels(&folders([long, "x"]))[0];
         assert!(label.starts_with('…') && label.ends_with("longer-than-a-panel"));
         assert_eq!(label.chars().count(), LONGEST_LABEL);
     }

@@ -81,7 +81,7 @@ fn report<'a>(
     table: &Table,
 ) -> Result<Report<'a>, CliError> {
     let is_solid = case.model.dimension == Dimension::Solid;
-    let history = History { case, table };
+    let history = History::new(case, table);
     let bodies = case.model.bodies.iter();
     let spacing = bodies
         .map(|body| body.body.spacing)

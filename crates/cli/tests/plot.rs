@@ -219,9 +219,38 @@ fn runs_are_compared_side_by_side_and_in_one_diagram() {
     let outcome = place.jstsph("jstsph plot @/r @/s --history length,dt -o @/length.svg");
     assert_eq!(outcome.code, 0, "{}", outcome.err);
     let svg = place.text("length.svg");
-    for label in ["r: length", "s: length", "r: dt", "s: dt"] {
+    for label in [">r<", ">s<", ">length (mm)<", ">dt (ns)<"] {
         assert!(svg.contains(label), "{label}");
     }
+    let plot = "jstsph plot @/r @/s --label coarse --label fine --title Energies -o @/e.svg \
+                --history kinetic_energy,rate(plastic_energy) --over length --log y";
+    let outcome = place.jstsph(plot);
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    let svg = place.text("e.svg");
+    for label in [
+        ">Energies<",
+        ">coarse<",
+        ">length (mm)<",
+        ">rate of plastic energy (W",
+    ] {
+        assert!(svg.contains(label), "{label} in {svg}");
+    }
+    let outcome = place.jstsph("jstsph plot @/r @/s --history length --against steps -o @/n.svg");
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    assert!(place.text("n.svg").contains(">steps<"));
+    for (dpi, name) in [(96, "small.png"), (192, "usual.png")] {
+        let outcome = place.jstsph(&format!("jstsph plot @/r --dpi {dpi} -o @/{name}"));
+        assert_eq!(outcome.code, 0, "{}", outcome.err);
+    }
+    let [small, usual] = ["small.png", "usual.png"].map(|name| png_size(&place.bytes(name)));
+    assert_eq!((2 * small.0, 2 * small.1), usual);
+    let outcome = place.jstsph("jstsph plot @/r @/s --label one");
+    assert_eq!(outcome.code, 2);
+    assert!(
+        outcome.err.contains("1 of --label for 2 folders"),
+        "{}",
+        outcome.err
+    );
     let outcome = place.jstsph("jstsph plot @/r @/s --animate @/a.gif");
     assert_eq!(outcome.code, 2);
     assert!(

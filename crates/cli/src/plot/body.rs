@@ -103,10 +103,18 @@ struct Picture {
     spacing: f64,
 }
 
-/// Draws the chosen frames of one run or several side by side.
-pub(super) fn figure(runs: &[Drawn<'_>], name: &str, look: &Look) -> Result<Figure, CliError> {
+/// Draws the chosen frames of one run, or of several, side by side; several frames of several runs
+/// in a row for each run.
+pub(super) fn figure(
+    runs: &[Drawn<'_>],
+    name: &str,
+    look: &Look,
+    title: Option<&str>,
+) -> Result<Figure, CliError> {
+    let frames = runs.iter().map(|run| run.chosen.len()).max().unwrap_or(1);
     with_plots(runs, name, look, |heading, plots| {
-        Figure::panels(heading, plots)
+        let columns = if frames > 1 { frames } else { plots.len() };
+        Figure::grid(title.unwrap_or(heading), columns, plots)
     })
 }
 

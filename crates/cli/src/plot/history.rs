@@ -4,10 +4,10 @@ use jstsph_case::Case;
 use jstsph_geometry::Dimension;
 use jstsph_output::plot::{LinePlot, Quantity, Series, SeriesStyle};
 use jstsph_output::{HISTORY_COLUMNS, OutputError, Table};
-use jstsph_solver::{Field, ProbeKind, Simulation};
-use jstsph_tensor::Vec3;
+use jstsph_solver::{ProbeKind, Simulation};
 
-use super::{heading, moment};
+use super::derived::{rate_unit, rated};
+use super::probes::described;
 use crate::error::CliError;
 
 /// Sets of columns with a name.
@@ -20,6 +20,22 @@ const VISIBLE: f64 = 1e-4;
 pub(crate) struct History<'a> {
     pub(crate) case: &'a Case,
     pub(crate) table: &'a Table,
+    /// Column of the horizontal axis in place of time.
+    pub(super) over: Option<&'a str>,
+    /// Time of profiles, s; the last with values unless given.
+    pub(super) at: Option<f64>,
+}
+
+impl<'a> History<'a> {
+    /// The table over time.
+    pub(crate) fn new(case: &'a Case, table: &'a Table) -> Self {
+        Self {
+            case,
+            table,
+            over: None,
+            at: None,
+        }
+    }
 }
 
 impl History<'_> {
@@ -58,7 +74,7 @@ impl History<'_> {
             ..self.series("initial + work", &supplied)?
         });
         Ok(LinePlot {
-            x: time(),
+            x: self.abscissa(),
             y: Quantity::new("energy", self.per_thickness("J")),
             series,
             ..LinePlot::default()
@@ -69,7 +85,7 @@ impl History<'_> {
         let mut percent = self.column("energy_balance")?;
         percent.iter_mut().for_each(|value| *value *= 100.0);
         Ok(LinePlot {
-            x: time(),
+            x: self.abscissa(),
             y: Quantity::new("energy balance, % of the largest energy", ""),
             series: vec![self.series("balance", &percent)?],
             ..LinePlot::default()
@@ -85,82 +101,11 @@ impl History<'_> {
             }
         });
         Ok(LinePlot {
-            x: time(),
+            x: self.abscissa(),
             y: Quantity::new("time step", "s"),
             series: vec![self.series("time step", &steps)?],
             ..LinePlot::default()
         })
-    }
-
-    /// Numbers over time, and lines of points as profiles at the last time they have values.
-    pub(super) fn probes(&self) -> Result<Vec<LinePlot>, CliError> {
-        let mut numbers = Vec::new();
-        let mut profiles = Vec::new();
-        for probe in &self.case.probes {
-            let columns = Simulation::probe_columns(probe);
-            match &probe.kind {
-                ProbeKind::Line {
-                    from, to, field, ..
-                } => profiles.extend(self.profile(&probe.name, &columns, *field, [from, to])?),
-                _ => numbers.extend(columns),
-            }
-        }
-        let names: Vec<&str> = numbers.iter().map(String::as_str).collect();
-        let mut plots = self.by_unit(&names)?;
-        // Profiles of one quantity share a diagram.
-        for profile in profiles {
-            let same = plots
-                .iter_mut()
-                .find(|plot: &&mut LinePlot| plot.x == profile.x && plot.y == profile.y);
-            match same {
-                Some(plot) => plot.series.extend(profile.series),
-                None => plots.push(profile),
-            }
-        }
-        if plots.is_empty() {
-            return Err(CliError::Picture(OutputError::NothingToDraw {
-                title: heading(self.case).to_owned(),
-                reason: "no probe has a value",
-            }));
-        }
-        Ok(plots)
-    }
-
-    fn profile(
-        &self,
-        name: &str,
-        columns: &[String],
-        field: Field,
-        [from, to]: [&Vec3; 2],
-    ) -> Result<Option<LinePlot>, CliError> {
-        let values = columns
-            .iter()
-            .map(|column| self.column(column))
-            .collect::<Result<Vec<_>, _>>()?;
-        let times = self.column("time")?;
-        let has_values = |row: &usize| values.iter().any(|column| column[*row].is_finite());
-        let Some(row) = (0..times.len()).rev().find(has_values) else {
-            return Ok(None);
-        };
-        let length = (to - from).norm();
-        let last = (columns.len().max(2) - 1) as f64;
-        let points = values
-            .iter()
-            .enumerate()
-            .map(|(i, column)| (length * i as f64 / last, column[row]))
-            .filter(|(_, value)| value.is_finite());
-        let (number, unit) = moment(times[row]);
-        let (label, field_unit) = described(field);
-        Ok(Some(LinePlot {
-            x: Quantity::new("distance along the line", "m"),
-            y: Quantity::new(label, field_unit),
-            series: vec![Series {
-                label: format!("{}, t = {number} {unit}", name.replace('_', " ")),
-                points: points.collect(),
-                style: SeriesStyle::LineWithMarkers,
-            }],
-            ..LinePlot::default()
-        }))
     }
 
     /// One diagram for each unit among the columns, in their order.
@@ -178,7 +123,7 @@ impl History<'_> {
                     plot.y.name = common_name(&plot.series, &unit);
                 }
                 None => plots.push(LinePlot {
-                    x: time(),
+                    x: self.abscissa(),
                     y: Quantity::new(series.label.clone(), unit),
                     series: vec![series],
                     ..LinePlot::default()
@@ -188,18 +133,28 @@ impl History<'_> {
         Ok(plots)
     }
 
-    /// A curve over time, without the rows in which the column has no value.
+    /// What the horizontal axis shows.
+    fn abscissa(&self) -> Quantity {
+        match self.over {
+            None => Quantity::new("time", "s"),
+            Some(column) => Quantity::new(shown(column), self.unit(column)),
+        }
+    }
+
+    /// A curve, without the rows in which one of the columns has no value.
     fn series(&self, name: &str, values: &[f64]) -> Result<Series, CliError> {
-        let times = self.column("time")?;
-        let points = times.into_iter().zip(values.iter().copied());
+        let abscissas = self.column(self.over.unwrap_or("time"))?;
+        let points = abscissas.into_iter().zip(values.iter().copied());
         Ok(Series {
-            label: name.replace('_', " "),
-            points: points.filter(|(_, value)| value.is_finite()).collect(),
-            style: SeriesStyle::Line,
+            label: shown(name),
+            points: points
+                .filter(|(x, value)| x.is_finite() && value.is_finite())
+                .collect(),
+            ..Series::default()
         })
     }
 
-    fn column(&self, name: &str) -> Result<Vec<f64>, CliError> {
+    pub(super) fn column(&self, name: &str) -> Result<Vec<f64>, CliError> {
         self.table.column(name).ok_or_else(|| {
             CliError::Picture(OutputError::NoColumn {
                 column: name.to_owned(),
@@ -222,6 +177,9 @@ impl History<'_> {
 
     /// SI unit of a column, empty for a pure number.
     pub(crate) fn unit(&self, name: &str) -> String {
+        if let Some(column) = rated(name) {
+            return rate_unit(&self.unit(column));
+        }
         if let Some(column) = HISTORY_COLUMNS.iter().find(|column| column.name == name) {
             return match column.unit {
                 "-" => String::new(),
@@ -262,22 +220,17 @@ impl History<'_> {
     }
 }
 
-fn time() -> Quantity {
-    Quantity::new("time", "s")
-}
-
-/// Name and SI unit of a probe's field.
-fn described(field: Field) -> (&'static str, &'static str) {
-    match field {
-        Field::EquivalentPlasticStrain => ("equivalent plastic strain", ""),
-        Field::VonMisesStress => ("von Mises stress", "Pa"),
-        Field::Pressure => ("pressure, tension positive", "Pa"),
-        Field::Jacobian => ("volume ratio J", ""),
-        Field::WaveSpeed => ("wave speed", "m/s"),
-        Field::Temperature => ("temperature", "K"),
-        Field::Displacement(_) => ("displacement", "m"),
-        Field::Position(_) => ("position", "m"),
-        Field::Velocity(_) => ("velocity", "m/s"),
+/// A column's name as text.
+pub(super) fn shown(column: &str) -> String {
+    if let Some(column) = rated(column) {
+        return format!("rate of {}", shown(column));
+    }
+    match column {
+        // Equations of Greto & Kulasegaram 2019.
+        "paper_internal_energy" => "internal energy (4.1a)".to_owned(),
+        "paper_plastic_dissipation" => "plastic dissipation (4.1b)".to_owned(),
+        "paper_jst_dissipation" => "JST dissipation (4.1c)".to_owned(),
+        other => other.replace('_', " "),
     }
 }
 
@@ -370,16 +323,19 @@ line = { from = [0, 0.003], to = [0.004, 0.003], count = 3, field = "pressure" }
             table: &table(),
             label: "",
         };
-        crate::plot::curves::figure(&[told], what).map(|_| ())
+        let wanted = crate::plot::curves::Wanted {
+            what,
+            look: &crate::arguments::CurveLook::default(),
+            title: None,
+            folders: &[],
+        };
+        crate::plot::curves::figure(&[told], wanted).map(|_| ())
     }
 
     #[test]
     fn energies_are_per_thickness_and_compared_with_what_was_supplied() {
         let (case, table) = (case(), table());
-        let history = History {
-            case: &case,
-            table: &table,
-        };
+        let history = History::new(&case, &table);
         let plot = history.energies().unwrap();
         assert_eq!(plot.y, Quantity::new("energy", "J/m"));
         let last = |label: &str| {
@@ -395,10 +351,7 @@ line = { from = [0, 0.003], to = [0.004, 0.003], count = 3, field = "pressure" }
     #[test]
     fn probes_are_grouped_by_unit_and_lines_are_profiles() {
         let (case, table) = (case(), table());
-        let history = History {
-            case: &case,
-            table: &table,
-        };
+        let history = History::new(&case, &table);
         let plots = history.probes().unwrap();
         let labels: Vec<String> = plots
             .iter()

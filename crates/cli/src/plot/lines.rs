@@ -14,8 +14,9 @@ use super::body::Sight;
 const STEPS: u32 = 2000;
 /// Straight pieces of a drawn circle.
 const CIRCLE_PIECES: u32 = 96;
-/// Distance from a wall's line, over the size of the picture, at which its sides are looked at.
-const ASIDE: f64 = 1e-5;
+/// Distance from a wall's line, over the size of the picture, at which its sides are looked at: farther
+/// than the pieces of a drawn circle are from the circle.
+const ASIDE: f64 = 1e-3;
 /// Part of a line that must have the solid on one and the same side to be hatched.
 const AGREEMENT: f64 = 0.9;
 

@@ -2,7 +2,7 @@
 
 use jstsph_case::Case;
 use jstsph_geometry::Dimension;
-use jstsph_output::plot::{Figure, Group, ParticlePlot};
+use jstsph_output::plot::{Figure, Group, ParticlePlot, Wall};
 use jstsph_solver::{Condition, ConditionKind};
 use jstsph_tensor::Vec3;
 
@@ -49,13 +49,45 @@ pub(super) fn figure(case: &Case, view: Option<ViewName>) -> Result<Figure, CliE
     }
     let corners = box_of(positions.iter());
     let middle = 0.5 * (corners.0 + corners.1);
+    let walls = lines::walls(case, sight, &middle, corners, 0.0);
     let plot = ParticlePlot {
         view: sight.view(case),
-        walls: lines::walls(case, sight, &middle, corners, 0.0),
+        window: window(sight, corners, &walls, spacing),
+        walls,
         groups: &groups,
         ..ParticlePlot::new(&positions, &values, "", "", spacing)
     };
     Figure::panels(heading(case), &[plot]).map_err(CliError::Picture)
+}
+
+/// The body and the bends of the walls around it, as long as they are about as large as the body:
+/// ends of a line are only where it leaves the picture.
+fn window(
+    sight: Sight,
+    (low, high): (Vec3, Vec3),
+    walls: &[Wall],
+    spacing: f64,
+) -> Option<[[f64; 2]; 2]> {
+    let [right, up, _] = sight.plane?;
+    let size = (high - low).norm();
+    let (mut lower, mut upper) = ([low[right], low[up]], [high[right], high[up]]);
+    for wall in walls {
+        let bends = wall.line.get(1..wall.line.len().saturating_sub(1));
+        for bend in bends.into_iter().flatten() {
+            let place = [bend[right], bend[up]];
+            let is_near = [right, up]
+                .into_iter()
+                .all(|axis| bend[axis] > low[axis] - size && bend[axis] < high[axis] + size);
+            if is_near {
+                for i in 0..2 {
+                    lower[i] = lower[i].min(place[i]);
+                    upper[i] = upper[i].max(place[i]);
+                }
+            }
+        }
+    }
+    let margin = spacing + 0.04 * (upper[0] - lower[0]).max(upper[1] - lower[1]);
+    Some([lower.map(|x| x - margin), upper.map(|x| x + margin)])
 }
 
 /// Name, kind and number of particles of a condition.

@@ -100,6 +100,7 @@ fn profile(quantity: &Quantity, found: &QuantityFinding) -> Option<LinePlot> {
                 .filter_map(|(i, v)| Some(((i + 1) as f64, (*v)?)))
                 .collect(),
             style: SeriesStyle::LineWithMarkers,
+            ..Series::default()
         }
     });
     let curves: Vec<Series> = curves.filter(|curve| !curve.points.is_empty()).collect();
@@ -124,6 +125,7 @@ fn convergence(quantity: &Quantity, found: &QuantityFinding) -> Option<LinePlot>
             label: scheme.to_owned(),
             points: points.map(|(n, value)| (n as f64, value)).collect(),
             style: SeriesStyle::LineWithMarkers,
+            ..Series::default()
         }
     });
     let curves: Vec<Series> = curves.filter(|curve| !curve.points.is_empty()).collect();

@@ -218,6 +218,7 @@ pub(super) fn figure(
                 label,
                 points: vec![(place, *value)],
                 style: SeriesStyle::LineWithMarkers,
+                ..Series::default()
             }),
         }
     }
@@ -231,10 +232,7 @@ pub(super) fn figure(
         columns: Vec::new(),
         rows: Vec::new(),
     };
-    let history = History {
-        case,
-        table: &table,
-    };
+    let history = History::new(case, &table);
     let finite = || places.values.iter().copied().filter(|x| x.is_finite());
     let lowest = finite().fold(f64::INFINITY, f64::min);
     let highest = finite().fold(0.0, f64::max);

@@ -1,19 +1,21 @@
 //! Animations as GIF and APNG files.
 
+use std::collections::HashMap;
 use std::io;
 use std::path::Path;
 
-use super::canvas::Canvas;
+use super::canvas::{Canvas, Colour, INK, PAPER, mix};
 use super::raster::{self, Raster};
-use super::{MARK, ParticlePlot, particles};
+use super::{ColourMap, MARK, ParticlePlot, particles};
 use crate::{OutputError, atomic_write};
 
 /// Time of a picture, in hundredths of a second.
 const SHOWN: u16 = 10;
 /// The same of the last one.
 const LAST_SHOWN: u16 = 150;
-/// Colours are chosen from every tenth pixel: pictures have few.
-const SAMPLING: i32 = 10;
+/// Colours of a GIF: so many shades from text to paper, of the field's colours, of these darkened as
+/// for edges and rims, and of these brightened as for highlights.
+const SHADES: [u8; 4] = [24, 128, 56, 40];
 
 /// The files an animation can be written to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,6 +30,7 @@ pub enum Movie {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Animation {
     pictures: Vec<Canvas>,
+    colours: ColourMap,
 }
 
 impl Animation {
@@ -39,6 +42,7 @@ impl Animation {
     pub fn new(heading: &str, plots: &[ParticlePlot]) -> Result<Self, OutputError> {
         Ok(Self {
             pictures: particles::sequence(heading, plots)?,
+            colours: plots[0].colours,
         })
     }
 
@@ -61,7 +65,7 @@ impl Animation {
             .iter()
             .map(|picture| raster::moving(picture, page));
         match movie {
-            Movie::Gif => gif(rasters),
+            Movie::Gif => gif(rasters, &palette(self.colours)),
             Movie::Apng => apng(rasters, self.pictures.len()),
         }
     }
@@ -97,7 +101,39 @@ fn apng(rasters: impl Iterator<Item = io::Result<Raster>>, count: usize) -> io::
     Ok(bytes)
 }
 
-fn gif(rasters: impl ExactSizeIterator<Item = io::Result<Raster>>) -> io::Result<Vec<u8>> {
+/// The colours of all pictures: those that one picture happens to have would change the colour bar
+/// from picture to picture.
+fn palette(colours: ColourMap) -> Vec<Colour> {
+    let shades = |count: u8| (0..count).map(move |i| f64::from(i) / f64::from(count - 1));
+    let [greys, plain, dark, bright] = SHADES;
+    let greys = shades(greys).map(|share| mix(INK, PAPER, share));
+    let plain = shades(plain).map(|place| colours.at(place));
+    let dark = shades(dark).map(|place| mix(colours.at(place), INK, 0.35));
+    let bright = shades(bright).map(|place| mix(colours.at(place), PAPER, 0.4));
+    greys.chain(plain).chain(dark).chain(bright).collect()
+}
+
+/// Numbers of the nearest colours of a palette.
+fn indexed(rgb: &[u8], palette: &[Colour], known: &mut HashMap<Colour, u8>) -> Vec<u8> {
+    let distance = |a: Colour, b: Colour| -> u32 {
+        let parts = a.into_iter().zip(b);
+        parts.map(|(a, b)| u32::from(a.abs_diff(b)).pow(2)).sum()
+    };
+    let nearest = |colour: Colour| -> u8 {
+        let numbers = (0..=u8::MAX).zip(palette);
+        let nearest = numbers.min_by_key(|(_, other)| distance(colour, **other));
+        nearest.map_or(0, |(number, _)| number)
+    };
+    let pixels = rgb.chunks_exact(3).map(|p| [p[0], p[1], p[2]]);
+    pixels
+        .map(|colour| *known.entry(colour).or_insert_with(|| nearest(colour)))
+        .collect()
+}
+
+fn gif(
+    rasters: impl ExactSizeIterator<Item = io::Result<Raster>>,
+    palette: &[Colour],
+) -> io::Result<Vec<u8>> {
     let count = rasters.len();
     let mut rasters = rasters.peekable();
     let too_large = |_| io::Error::other("a GIF has at most 65535 x 65535 pixels");
@@ -108,13 +144,15 @@ fn gif(rasters: impl ExactSizeIterator<Item = io::Result<Raster>>) -> io::Result
     let height = u16::try_from(first.height).map_err(too_large)?;
     let mut bytes = Vec::new();
     {
-        let mut encoder =
-            gif::Encoder::new(&mut bytes, width, height, &[]).map_err(io::Error::other)?;
+        let mut encoder = gif::Encoder::new(&mut bytes, width, height, palette.as_flattened())
+            .map_err(io::Error::other)?;
         encoder
             .set_repeat(gif::Repeat::Infinite)
             .map_err(io::Error::other)?;
+        let mut known = HashMap::new();
         for (number, raster) in rasters.enumerate() {
-            let mut frame = gif::Frame::from_rgb_speed(width, height, &raster?.rgb, SAMPLING);
+            let pixels = indexed(&raster?.rgb, palette, &mut known);
+            let mut frame = gif::Frame::from_indexed_pixels(width, height, pixels, None);
             frame.delay = shown(number, count);
             encoder.write_frame(&frame).map_err(io::Error::other)?;
         }
@@ -139,6 +177,22 @@ mod tests {
             .map(|(x, v)| ParticlePlot::new(x, v, "speed", "m/s", 0.5))
             .collect();
         Animation::new("apart", &plots).unwrap()
+    }
+
+    #[test]
+    fn colours_of_a_gif_do_not_depend_on_the_picture() {
+        let palette = palette(ColourMap::Viridis);
+        assert_eq!(palette.len(), SHADES.map(usize::from).iter().sum());
+        assert!(palette.len() <= 256 && palette.contains(&PAPER) && palette.contains(&INK));
+        let mut known = HashMap::new();
+        for i in 0..=1000 {
+            let colour = ColourMap::Viridis.at(f64::from(i) / 1000.0);
+            let number = indexed(&colour, &palette, &mut known)[0];
+            let found = palette[usize::from(number)];
+            // Half the distance of two of 128 shades of a range of about 256.
+            let parts = colour.iter().zip(found);
+            assert!(parts.into_iter().all(|(a, b)| a.abs_diff(b) <= 3), "{i}");
+        }
     }
 
     #[test]

@@ -153,6 +153,8 @@ pub(crate) struct Axes<'a> {
     pub(crate) grid: bool,
     /// Whether the y axis is labelled; panels side by side share the first one's.
     pub(crate) has_y_labels: bool,
+    /// Whether the x axis is labelled; panels one above the other share the last one's.
+    pub(crate) has_x_labels: bool,
 }
 
 impl Axes<'_> {
@@ -197,6 +199,9 @@ impl Axes<'_> {
         for tick in self.x_ticks(frame.width()) {
             let x = self.place(frame, [tick.value, self.rulers[1].lower])[0];
             canvas.line([x, frame.bottom], [x, frame.bottom + TICK], stroke);
+            if !self.has_x_labels {
+                continue;
+            }
             let y = frame.bottom + TICK + GAP + 0.75 * TICK_SIZE;
             canvas.text([x, y], TICK_SIZE, Anchor::Middle, &tick.label);
         }
@@ -211,7 +216,9 @@ impl Axes<'_> {
         }
         let middle = 0.5 * (frame.left + frame.right);
         let y = frame.bottom + BELOW - 0.25 * LABEL_SIZE;
-        canvas.text([middle, y], LABEL_SIZE, Anchor::Middle, self.labels[0]);
+        if self.has_x_labels {
+            canvas.text([middle, y], LABEL_SIZE, Anchor::Middle, self.labels[0]);
+        }
         if !self.has_y_labels {
             return;
         }
@@ -316,6 +323,7 @@ mod tests {
             labels: ["", ""],
             grid: false,
             has_y_labels: true,
+            has_x_labels: true,
         };
         let labels = |width: f64| -> Vec<String> {
             let ticks = axes.x_ticks(width);

@@ -24,7 +24,33 @@ pub(crate) fn mix(a: Colour, b: Colour, share: f64) -> Colour {
 pub(crate) struct Stroke {
     pub(crate) colour: Colour,
     pub(crate) width: f64,
-    pub(crate) dashed: bool,
+    pub(crate) dash: Dash,
+}
+
+/// How a line is broken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) enum Dash {
+    /// Not at all.
+    #[default]
+    None,
+    /// Dashes.
+    Dashes,
+    /// Dots.
+    Dots,
+    /// A dash and a dot by turns.
+    DashesAndDots,
+}
+
+impl Dash {
+    /// Lengths drawn and left out by turns, over the width of the line; empty for a full line.
+    pub(crate) fn pattern(self) -> &'static [f64] {
+        match self {
+            Self::None => &[],
+            Self::Dashes => &[4.0, 2.5],
+            Self::Dots => &[1.2, 1.8],
+            Self::DashesAndDots => &[5.0, 2.0, 1.2, 2.0],
+        }
+    }
 }
 
 impl Stroke {
@@ -32,7 +58,7 @@ impl Stroke {
         Self {
             colour,
             width,
-            dashed: false,
+            dash: Dash::None,
         }
     }
 }

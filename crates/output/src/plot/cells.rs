@@ -12,6 +12,8 @@ const PIECE: f64 = 2.5;
 const MOST_PIECES: f64 = 48.0;
 /// Shades between the ends of the colour bar that pieces tell apart.
 const SHADES: f64 = 80.0;
+/// How far what is below the pieces reaches beyond the cell: less than half of the outline's width.
+const BELOW: f64 = 0.4;
 /// Smallest side of a cell whose edges are drawn.
 const SIDE_WITH_EDGES: f64 = 7.0;
 
@@ -31,11 +33,17 @@ pub(super) fn draw(
         })
         .collect();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
-    for (_, cell) in sorted {
-        let cell = Cell {
+    let sorted: Vec<Cell> = sorted
+        .into_iter()
+        .map(|(_, cell)| Cell {
             corners: cell.map(|a| panel.place(plot.project(&plot.positions[a]))),
             values: cell.map(|a| plot.values[a]),
-        };
+        })
+        .collect();
+    for cell in &sorted {
+        cell.draw_below(canvas, &panel.frame, bar);
+    }
+    for cell in &sorted {
         cell.draw(canvas, &panel.frame, bar);
     }
 }
@@ -47,6 +55,20 @@ struct Cell {
 }
 
 impl Cell {
+    /// Something of the right colour below the pieces: where two cells cut their common side
+    /// differently, rounding leaves pixels between them that belong to neither.
+    fn draw_below(&self, canvas: &mut Canvas, frame: &Rect, bar: &ColourBar) {
+        let middle = self.place(0.5, 0.5);
+        let points = self.corners.map(|corner| {
+            let away = [corner[0] - middle[0], corner[1] - middle[1]];
+            let grown = 1.0 + BELOW / away[0].hypot(away[1]).max(BELOW);
+            [middle[0] + grown * away[0], middle[1] + grown * away[1]]
+        });
+        if points.iter().all(|&place| frame.contains(place)) {
+            canvas.patch(points.to_vec(), bar.colour(self.value(0.5, 0.5)));
+        }
+    }
+
     fn draw(&self, canvas: &mut Canvas, frame: &Rect, bar: &ColourBar) {
         let [across, along] = [[0, 1, 3, 2], [0, 3, 1, 2]].map(|ends| self.pieces(ends, bar));
         let at = |step: usize, pieces: usize| step as f64 / pieces as f64;

@@ -76,7 +76,7 @@ mod tests {
             groups: &groups,
             ..ParticlePlot::new(&positions, &[0.0, 1.0, 0.0], "group", "", 0.5)
         };
-        let canvas = particles::draw("", &[plot]).unwrap();
+        let canvas = particles::draw("", 1, &[plot]).unwrap();
         let of = |wanted: Colour| {
             let shapes = canvas.shapes.iter();
             shapes

@@ -2,7 +2,7 @@
 
 use super::axis::{HALF_HEIGHT, TICK_SIZE};
 use super::canvas::{Anchor, Canvas, Rect};
-use super::lines::{colour, draw_series};
+use super::lines::draw_series;
 use super::{LinePlot, SeriesStyle, text};
 
 /// Length of a key.
@@ -45,9 +45,12 @@ pub(super) fn draw(canvas: &mut Canvas, plot: &LinePlot, frame: &Rect) {
             bottom: y + 1.0,
         };
         let ends = [[key.left, y], [key.right, y]];
-        let colour = colour(index);
+        let colour = series.colour(index);
         match series.style {
-            SeriesStyle::Line | SeriesStyle::Dashed => {
+            SeriesStyle::Line
+            | SeriesStyle::Dashed
+            | SeriesStyle::Dotted
+            | SeriesStyle::DashDotted => {
                 draw_series(canvas, &key, series.style, colour, &ends);
             }
             SeriesStyle::Markers | SeriesStyle::LineWithMarkers => {

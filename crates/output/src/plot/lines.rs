@@ -1,7 +1,7 @@
 //! Curves over a common axis.
 
-use super::axis::{Axes, BELOW, Ruler, Scale, TITLE, TITLE_SIZE, draw_title};
-use super::canvas::{Canvas, Colour, PAPER, Rect, Stroke};
+use super::axis::{Axes, BELOW, LABEL_SIZE, Ruler, Scale, TITLE, TITLE_SIZE, draw_title};
+use super::canvas::{Canvas, Colour, Dash, PAPER, Rect, Stroke};
 use super::{Quantity, clip, legend, text};
 use crate::{OutputError, Table};
 
@@ -33,6 +33,10 @@ pub enum SeriesStyle {
     Line,
     /// A dashed line, for references.
     Dashed,
+    /// A dotted line.
+    Dotted,
+    /// A line of dashes and dots.
+    DashDotted,
     /// Markers only, for measurements.
     Markers,
     /// A line with a marker at each point, for few points.
@@ -48,6 +52,16 @@ pub struct Series {
     pub points: Vec<(f64, f64)>,
     /// Look.
     pub style: SeriesStyle,
+    /// Number of its colour, for curves that belong together; its place among the curves unless
+    /// given. Colours go round after eight.
+    pub colour: Option<usize>,
+}
+
+impl Series {
+    /// Colour of the curve that is the `index`th of its diagram.
+    pub(super) fn colour(&self, index: usize) -> Colour {
+        colour(self.colour.unwrap_or(index))
+    }
 }
 
 /// What to draw over which axes.
@@ -63,7 +77,7 @@ pub struct LinePlot {
     pub x_scale: Scale,
     /// Vertical scale.
     pub y_scale: Scale,
-    /// The curves; colours go round after eight.
+    /// The curves.
     pub series: Vec<Series>,
 }
 
@@ -90,7 +104,7 @@ impl LinePlot {
             Ok(Series {
                 label: name.replace('_', " "),
                 points: abscissa.iter().copied().zip(values).collect(),
-                style: SeriesStyle::Line,
+                ..Series::default()
             })
         });
         Ok(Self {
@@ -160,9 +174,11 @@ impl<'a> Diagram<'a> {
             plot,
             rulers: [x, y],
             factors: [x_factor, y_factor],
+            // A long legend needs its space, and so does a long name of the axis.
+            height: height
+                .max(legend::ROW * plot.series.len() as f64)
+                .max(text::width(&y_label, LABEL_SIZE)),
             labels: [x_label, y_label],
-            // A long legend needs its space.
-            height: height.max(legend::ROW * plot.series.len() as f64),
         })
     }
 
@@ -172,6 +188,7 @@ impl<'a> Diagram<'a> {
             labels: [&self.labels[0], &self.labels[1]],
             grid: true,
             has_y_labels: true,
+            has_x_labels: true,
         }
     }
 
@@ -192,7 +209,7 @@ impl<'a> Diagram<'a> {
                 .iter()
                 .map(|&(x, y)| axes.place(frame, [x * self.factors[0], y * self.factors[1]]))
                 .collect();
-            draw_series(canvas, frame, series.style, colour(index), &places);
+            draw_series(canvas, frame, series.style, series.colour(index), &places);
         }
         axes.draw_above(canvas, frame);
         legend::draw(canvas, self.plot, frame);
@@ -299,7 +316,12 @@ pub(super) fn draw_series(
 ) {
     if style != SeriesStyle::Markers {
         let stroke = Stroke {
-            dashed: style == SeriesStyle::Dashed,
+            dash: match style {
+                SeriesStyle::Dashed => Dash::Dashes,
+                SeriesStyle::Dotted => Dash::Dots,
+                SeriesStyle::DashDotted => Dash::DashesAndDots,
+                _ => Dash::None,
+            },
             ..Stroke::solid(colour, 1.6)
         };
         for part in clip::polyline(&thin(places), frame) {
@@ -351,7 +373,7 @@ mod tests {
         Series {
             label: "s".to_owned(),
             points: points.to_vec(),
-            style: SeriesStyle::Line,
+            ..Series::default()
         }
     }
 

@@ -43,6 +43,9 @@ pub use walls::Wall;
 /// Text that every picture carries near its beginning, to tell ours from others.
 pub(crate) const MARK: &str = "made by jstsph";
 
+/// Pixels per inch of a PNG file: two per CSS pixel.
+const PIXELS_PER_INCH: u16 = 192;
+
 /// A finished picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
@@ -57,7 +60,7 @@ impl Figure {
     /// [`OutputError::NotFinite`], [`OutputError::CellPoint`].
     pub fn particles(plot: &ParticlePlot) -> Result<Self, OutputError> {
         Ok(Self {
-            canvas: particles::draw("", std::slice::from_ref(plot))?,
+            canvas: particles::draw("", 1, std::slice::from_ref(plot))?,
         })
     }
 
@@ -68,7 +71,21 @@ impl Figure {
     /// Those of [`Self::particles`].
     pub fn panels(heading: &str, plots: &[ParticlePlot]) -> Result<Self, OutputError> {
         Ok(Self {
-            canvas: particles::draw(heading, plots)?,
+            canvas: particles::draw(heading, plots.len(), plots)?,
+        })
+    }
+
+    /// The same in rows of `columns` bodies each.
+    ///
+    /// # Errors
+    /// Those of [`Self::particles`].
+    pub fn grid(
+        heading: &str,
+        columns: usize,
+        plots: &[ParticlePlot],
+    ) -> Result<Self, OutputError> {
+        Ok(Self {
+            canvas: particles::draw(heading, columns, plots)?,
         })
     }
 
@@ -103,7 +120,17 @@ impl Figure {
     /// # Errors
     /// [`OutputError::Io`].
     pub fn save_png(&self, path: &Path) -> Result<(), OutputError> {
-        let bytes = raster::png(&self.canvas).map_err(OutputError::io("draw", path))?;
+        self.save_png_at(path, PIXELS_PER_INCH)
+    }
+
+    /// The same with another number of pixels per inch: below 192 for small files, 300 and more for
+    /// print. Sizes in inches, text and lines included, stay the same.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`], also for a picture too large for memory.
+    pub fn save_png_at(&self, path: &Path, pixels_per_inch: u16) -> Result<(), OutputError> {
+        let bytes = raster::png(&self.canvas, pixels_per_inch);
+        let bytes = bytes.map_err(OutputError::io("draw", path))?;
         atomic_write(path, |writer| writer.write_all(&bytes))
     }
 

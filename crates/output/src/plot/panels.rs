@@ -1,4 +1,4 @@
-//! Where everything goes in a picture of bodies side by side.
+//! Where everything goes in a picture of bodies side by side and in rows.
 
 use super::axis::{
     Axes, BELOW, HALF_HEIGHT, LABEL_SIZE, Ruler, TICK_SIZE, TITLE, TITLE_SIZE, draw_title,
@@ -11,6 +11,8 @@ use super::{Axis, View, text};
 const LARGEST: [f64; 2] = [580.0, 470.0];
 /// Largest width of several bodies with the gaps between them.
 const LARGEST_ROW: f64 = 1000.0;
+/// Largest height of several rows with the gaps between them.
+const LARGEST_COLUMN: f64 = 900.0;
 /// Limits of the plot area's width over its height.
 const ASPECT: [f64; 2] = [0.4, 4.0];
 const MARGIN: f64 = 12.0;
@@ -21,11 +23,15 @@ const PANEL_TITLE: f64 = LABEL_SIZE + 9.0;
 /// Height of the strip below an oblique view with the axes' directions and the scale bar.
 const DIRECTIONS: f64 = 60.0;
 
-/// Panels of one size side by side, with a common scale.
+/// Panels of one size in one or more rows, with a common scale.
 pub(super) struct Panels<'a> {
     pub(super) size: [f64; 2],
     heading: &'a str,
     titles: &'a [&'a str],
+    /// Panels in a row.
+    columns: usize,
+    /// From a panel to the one below it.
+    pitch: f64,
     view: View,
     /// Lower left corner of every panel, m.
     origin: [f64; 2],
@@ -53,10 +59,11 @@ impl Panel {
 }
 
 impl<'a> Panels<'a> {
-    /// Lays out one panel per title, each showing the window (m).
+    /// Lays out one panel per title in rows of so many, each showing the window (m).
     pub(super) fn new(
         heading: &'a str,
         titles: &'a [&'a str],
+        columns: usize,
         view: View,
         window: [[f64; 2]; 2],
         bar: &ColourBar,
@@ -70,9 +77,12 @@ impl<'a> Panels<'a> {
         } else if aspect > ASPECT[1] {
             extent[1] = extent[0] / ASPECT[1];
         }
-        let count = titles.len() as f64;
+        let columns = columns.clamp(1, titles.len());
+        let rows = titles.len().div_ceil(columns) as f64;
+        let count = columns as f64;
         let widest = LARGEST[0].min((LARGEST_ROW - GAP * (count - 1.0)) / count);
-        let pixels_per_metre = (widest / extent[0]).min(LARGEST[1] / extent[1]);
+        let highest = LARGEST[1].min((LARGEST_COLUMN - PANEL_TITLE * (rows - 1.0)) / rows);
+        let pixels_per_metre = (widest / extent[0]).min(highest / extent[1]);
         let [width, height] = extent.map(|e| e * pixels_per_metre);
         let origin = std::array::from_fn(|i| middle[i] - 0.5 * extent[i]);
 
@@ -94,6 +104,8 @@ impl<'a> Panels<'a> {
             size: [0.0; 2],
             heading,
             titles,
+            columns,
+            pitch: height + if has_titles { PANEL_TITLE + 8.0 } else { GAP },
             view,
             origin,
             pixels_per_metre,
@@ -126,26 +138,37 @@ impl<'a> Panels<'a> {
         let shift = left + 0.5 * (widest - content).max(0.0);
         panels.first.left += shift;
         panels.first.right += shift;
-        panels.size = [content.max(widest), panels.first.bottom + below + MARGIN];
+        let last = panels.last_frame().bottom;
+        panels.size = [content.max(widest), last + below + MARGIN];
         panels
     }
 
     pub(super) fn panel(&self, number: usize) -> Panel {
-        let shift = number as f64 * (self.first.width() + GAP);
+        let shift = (number % self.columns) as f64 * (self.first.width() + GAP);
+        let drop = (number / self.columns) as f64 * self.pitch;
         Panel {
             frame: Rect {
                 left: self.first.left + shift,
                 right: self.first.right + shift,
-                ..self.first
+                top: self.first.top + drop,
+                bottom: self.first.bottom + drop,
             },
             pixels_per_metre: self.pixels_per_metre,
             origin: self.origin,
         }
     }
 
-    /// The panel beside which the colour bar stands.
-    pub(super) fn last_frame(&self) -> Rect {
+    fn last_frame(&self) -> Rect {
         self.panel(self.titles.len() - 1).frame
+    }
+
+    /// All panels together, beside which the colour bar stands.
+    pub(super) fn whole_frame(&self) -> Rect {
+        Rect {
+            right: self.panel(self.columns - 1).frame.right,
+            bottom: self.last_frame().bottom,
+            ..self.first
+        }
     }
 
     /// Draws what is around and above the bodies: axes, titles, scale.
@@ -155,7 +178,8 @@ impl<'a> Panels<'a> {
             if let Some(plane) = self.view.plane() {
                 let labels = plane.map(|axis| format!("{} ({})", axis.name(), self.unit.1));
                 let axes = Axes {
-                    has_y_labels: number == 0,
+                    has_y_labels: number % self.columns == 0,
+                    has_x_labels: number + self.columns >= self.titles.len(),
                     ..self.axes([&labels[0], &labels[1]])
                 };
                 axes.draw_above(canvas, &frame);
@@ -171,7 +195,7 @@ impl<'a> Panels<'a> {
         if !self.heading.is_empty() {
             let row = Rect {
                 top: self.first.top - if has_titles { PANEL_TITLE } else { 0.0 },
-                right: self.last_frame().right,
+                right: self.whole_frame().right,
                 ..self.first
             };
             draw_title(canvas, &row, self.heading);
@@ -196,6 +220,7 @@ impl<'a> Panels<'a> {
             labels,
             grid: false,
             has_y_labels: true,
+            has_x_labels: true,
         }
     }
 
@@ -219,7 +244,7 @@ impl<'a> Panels<'a> {
     }
 
     fn draw_scale_bar(&self, canvas: &mut Canvas) {
-        let frame = self.last_frame();
+        let frame = self.whole_frame();
         let shown = frame.width() / self.pixels_per_metre * self.unit.0;
         // The longest round length within a quarter of the picture.
         let power = 10_f64.powf((0.25 * shown).log10().floor());
@@ -235,5 +260,30 @@ impl<'a> Panels<'a> {
         let at = [right - 0.5 * pixels, y - 7.0];
         let label = format!("{length} {}", self.unit.1);
         canvas.text(at, TICK_SIZE, Anchor::Middle, &label);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::ParticlePlot;
+    use super::*;
+    use jstsph_tensor::Vec3;
+
+    #[test]
+    fn rows_stand_below_each_other_within_the_picture() {
+        let positions = [Vec3::zeros(), Vec3::new(1.0, 1.0, 0.0)];
+        let plot = ParticlePlot::new(&positions, &[0.0, 1.0], "q", "", 0.1);
+        let bar = ColourBar::new(&plot, [0.0, 1.0].into_iter());
+        let titles = ["a", "b", "c", "d", "e"];
+        let window = [[0.0, 0.0], [1.0, 1.0]];
+        let panels = Panels::new("rows", &titles, 2, View::Xy, window, &bar);
+        let frame = |number: usize| panels.panel(number).frame;
+        assert_eq!(frame(0).left, frame(2).left);
+        assert_eq!(frame(1).left, frame(3).left);
+        assert_eq!(frame(2).top, frame(3).top);
+        assert!(frame(2).top - frame(0).bottom >= PANEL_TITLE);
+        assert_eq!(panels.whole_frame().right, frame(1).right);
+        assert!(panels.size[1] > frame(4).bottom + BELOW);
+        assert!(frame(4).bottom - frame(0).top <= LARGEST_COLUMN + 30.0);
     }
 }

@@ -2,17 +2,14 @@
 
 use jstsph_tensor::Vec3;
 
-use super::canvas::{Canvas, INK, PAPER, Stroke, mix};
+use super::canvas::{Canvas, Dash, INK, PAPER, Stroke, mix};
 use super::colorbar::ColourBar;
-use super::extent::Extent;
+use super::extent::window;
 use super::hidden::visible;
 use super::panels::{Panel, Panels};
 use super::{ColourMap, Group, Quantity, Section, View, Wall, cells, walls};
 use crate::OutputError;
 use crate::error::{require_finite, require_length};
-
-/// The undeformed body is shown if it makes the picture's area larger by this factor at most.
-const MOST_GROWTH: f64 = 2.0;
 
 /// What to draw of a body, all lengths in m.
 #[derive(Debug, Clone, PartialEq)]
@@ -114,15 +111,20 @@ impl<'a> ParticlePlot<'a> {
 
 /// A particle in the plane of view.
 #[derive(Clone, Copy)]
-struct Dot {
+pub(super) struct Dot {
     particle: usize,
-    place: [f64; 2],
+    pub(super) place: [f64; 2],
     depth: f64,
 }
 
-/// Draws plots side by side, with a common scale, window and colour bar.
-pub(crate) fn draw(heading: &str, plots: &[ParticlePlot]) -> Result<Canvas, OutputError> {
-    Common::new(heading, plots).map(|common| common.draw(heading, plots, &common.dots))
+/// Draws plots in rows of so many, with a common scale, window and colour bar.
+pub(crate) fn draw(
+    heading: &str,
+    columns: usize,
+    plots: &[ParticlePlot],
+) -> Result<Canvas, OutputError> {
+    let common = Common::new(heading, plots)?;
+    Ok(common.draw(heading, columns, plots, &common.dots))
 }
 
 /// Draws plots one by one, with the scale, window and colour bar that they have in common.
@@ -132,7 +134,7 @@ pub(crate) fn sequence(heading: &str, plots: &[ParticlePlot]) -> Result<Vec<Canv
     Ok(each
         .map(|(plot, dots)| {
             let (plot, dots) = (std::slice::from_ref(plot), std::slice::from_ref(dots));
-            common.draw(heading, plot, dots)
+            common.draw(heading, 1, plot, dots)
         })
         .collect())
 }
@@ -184,9 +186,16 @@ impl Common {
         })
     }
 
-    fn draw(&self, heading: &str, plots: &[ParticlePlot], dots: &[Vec<Dot>]) -> Canvas {
+    fn draw(
+        &self,
+        heading: &str,
+        columns: usize,
+        plots: &[ParticlePlot],
+        dots: &[Vec<Dot>],
+    ) -> Canvas {
         let titles: Vec<&str> = plots.iter().map(|plot| plot.title.as_str()).collect();
-        let panels = Panels::new(heading, &titles, plots[0].view, self.window, &self.bar);
+        let (view, bar) = (plots[0].view, &self.bar);
+        let panels = Panels::new(heading, &titles, columns, view, self.window, bar);
         let mut canvas = Canvas::new(panels.size[0], panels.size[1]);
         for (number, (plot, dots)) in plots.iter().zip(dots).enumerate() {
             let panel = panels.panel(number);
@@ -210,7 +219,7 @@ impl Common {
             }
         }
         panels.draw(&mut canvas);
-        self.bar.draw(&mut canvas, &panels.last_frame());
+        self.bar.draw(&mut canvas, &panels.whole_frame());
         canvas
     }
 }
@@ -218,7 +227,7 @@ impl Common {
 const UNDEFORMED: Stroke = Stroke {
     colour: [138, 143, 150],
     width: 1.0,
-    dashed: true,
+    dash: Dash::Dashes,
 };
 
 /// Draws cells and dots, and returns the cells that are shown.
@@ -279,43 +288,6 @@ fn draw_dots(
     }
 }
 
-/// What the picture shows of the plane of view (m), and whether that includes the undeformed body.
-fn window(plots: &[ParticlePlot], dots: &[Vec<Dot>]) -> ([[f64; 2]; 2], bool) {
-    if let Some(window) = plots[0].window {
-        return (window, true);
-    }
-    let mut body = Extent::default();
-    let mut both = Extent::default();
-    for (plot, dots) in plots.iter().zip(dots) {
-        for dot in dots {
-            body.add(dot.place);
-            both.add(dot.place);
-        }
-        for point in plot.undeformed.iter().flatten() {
-            both.add(plot.project(point));
-        }
-        if plot.view.plane().is_none() {
-            // A surface seen at an angle is only understood as a whole.
-            for point in plot.walls.iter().flat_map(|wall| &wall.line) {
-                body.add(plot.project(point));
-                both.add(plot.project(point));
-            }
-        }
-    }
-    let spacing = plots[0].spacing;
-    let is_near = both.area(spacing) <= MOST_GROWTH * body.area(spacing);
-    let shown = if is_near { both } else { body };
-    let size = shown.size();
-    let margin = spacing + 0.04 * size[0].max(size[1]);
-    (
-        [
-            shown.lower.map(|x| x - margin),
-            shown.upper.map(|x| x + margin),
-        ],
-        is_near,
-    )
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -323,7 +295,7 @@ mod tests {
     use crate::plot::canvas::{Colour, Shape};
 
     fn draw(plot: &ParticlePlot) -> Result<Canvas, OutputError> {
-        super::draw("", std::slice::from_ref(plot))
+        super::draw("", 1, std::slice::from_ref(plot))
     }
 
     fn circles(canvas: &Canvas) -> Vec<([f64; 2], f64, Colour)> {
@@ -459,7 +431,7 @@ mod tests {
             ParticlePlot::new(&small, &[0.0, 1.0], "q", "", 0.1),
             ParticlePlot::new(&large, &[0.0, 4.0], "q", "", 0.1),
         ];
-        let canvas = super::draw("heading", &plots).unwrap();
+        let canvas = super::draw("heading", 2, &plots).unwrap();
         let [a, b, c, d] = circles(&canvas)[..] else {
             panic!("four dots")
         };
@@ -469,7 +441,7 @@ mod tests {
         assert_eq!(b.2, plots[0].colours.at(0.25));
         assert_eq!(d.2, plots[0].colours.at(1.0));
         assert!(matches!(
-            super::draw("none", &[]),
+            super::draw("none", 1, &[]),
             Err(OutputError::NothingToDraw { .. })
         ));
     }
@@ -488,7 +460,7 @@ mod tests {
             let canvas = draw(&plot).unwrap();
             let lines = canvas.shapes.iter();
             lines
-                .filter(|shape| matches!(shape, Shape::Polyline { stroke, .. } if stroke.dashed))
+                .filter(|shape| matches!(shape, Shape::Polyline { stroke, .. } if stroke.dash == Dash::Dashes))
                 .count()
         };
         assert_eq!(dashed(0.5), 1);

@@ -9,12 +9,10 @@ use tiny_skia::{
 use super::canvas::{Anchor, Canvas, Colour, PAPER, Shape, Stroke};
 use super::{MARK, text};
 
-/// Pixels per CSS pixel.
-const SCALE: f32 = 2.0;
-/// The same in animations, whose files are large enough.
+/// CSS pixels per inch.
+const CSS: f32 = 96.0;
+/// Pixels per CSS pixel in animations, whose files are large enough.
 const MOVING_SCALE: f32 = 1.0;
-/// Pixels per metre: 96 CSS pixels per inch.
-const PIXELS_PER_METRE: u32 = (96.0 * SCALE / 0.0254) as u32;
 
 /// Pixels without transparency, three bytes each.
 pub(crate) struct Raster {
@@ -23,17 +21,21 @@ pub(crate) struct Raster {
     pub(crate) rgb: Vec<u8>,
 }
 
-/// Renders the shapes and encodes them.
-pub(crate) fn png(canvas: &Canvas) -> io::Result<Vec<u8>> {
+/// Renders the shapes with so many pixels per inch and encodes them.
+pub(crate) fn png(canvas: &Canvas, pixels_per_inch: u16) -> io::Result<Vec<u8>> {
     let size = [canvas.width, canvas.height];
-    let Raster { width, height, rgb } = render(canvas, size, SCALE)?;
+    let resolution = f32::from(pixels_per_inch);
+    let Raster { width, height, rgb } = render(canvas, size, resolution / CSS)?;
+    let per_metre = (resolution / 0.0254) as u32;
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
+    // Pictures are looked at more often than drawn.
+    encoder.set_compression(png::Compression::High);
     encoder.set_pixel_dims(Some(png::PixelDimensions {
-        xppu: PIXELS_PER_METRE,
-        yppu: PIXELS_PER_METRE,
+        xppu: per_metre,
+        yppu: per_metre,
         unit: png::Unit::Meter,
     }));
     encoder.add_text_chunk("Software".to_owned(), MARK.to_owned())?;
@@ -153,14 +155,20 @@ fn draw_path(
             width,
             line_cap: LineCap::Butt,
             line_join: LineJoin::Round,
-            dash: stroke
-                .dashed
-                .then(|| StrokeDash::new(vec![4.0 * width, 2.5 * width], 0.0))
-                .flatten(),
+            dash: dash(stroke),
             ..tiny_skia::Stroke::default()
         };
         pixels.stroke_path(&path, &paint(stroke.colour), &style, scale, None);
     }
+}
+
+fn dash(stroke: Stroke) -> Option<StrokeDash> {
+    let lengths = stroke.dash.pattern().iter();
+    let lengths: Vec<f32> = lengths
+        .map(|length| (length * stroke.width) as f32)
+        .collect();
+    // None for an empty list.
+    StrokeDash::new(lengths, 0.0)
 }
 
 fn paint(colour: Colour) -> Paint<'static> {
@@ -179,13 +187,14 @@ mod tests {
         let mut canvas = Canvas::new(20.0, 10.0);
         canvas.circle([5.0, 5.0], 3.0, [200, 10, 20], None);
         canvas.text([19.0, 9.0], 8.0, Anchor::End, "I");
-        let bytes = png(&canvas).unwrap();
+        let bytes = png(&canvas, 192).unwrap();
         let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes))
             .read_info()
             .unwrap();
         let mut data = vec![0; reader.output_buffer_size().unwrap()];
         let info = reader.next_frame(&mut data).unwrap();
         assert_eq!((info.width, info.height), (40, 20));
+        assert_eq!(reader.info().pixel_dims.map(|dims| dims.xppu), Some(7559));
         let pixel = |x: usize, y: usize| &data[3 * (40 * y + x)..][..3];
         assert_eq!(pixel(10, 10), [200, 10, 20]);
         assert_eq!(pixel(18, 10), [255, 255, 255]);

@@ -93,9 +93,10 @@ fn write_outline(svg: &mut String, outline: Option<Stroke>) -> std::fmt::Result 
             svg,
             " stroke=\"{colour}\" stroke-width=\"{width}\" stroke-linejoin=\"round\""
         )?;
-        if stroke.dashed {
-            let dash = [4.0 * stroke.width, 2.5 * stroke.width].map(number);
-            write!(svg, " stroke-dasharray=\"{} {}\"", dash[0], dash[1])?;
+        let lengths = stroke.dash.pattern().iter();
+        let lengths: Vec<String> = lengths.map(|l| number(l * stroke.width)).collect();
+        if !lengths.is_empty() {
+            write!(svg, " stroke-dasharray=\"{}\"", lengths.join(" "))?;
         }
     }
     svg.push_str("/>\n");
@@ -130,6 +131,7 @@ fn hex([r, g, b]: Colour) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::canvas::Dash;
     use super::*;
 
     #[test]
@@ -137,7 +139,7 @@ mod tests {
         let mut canvas = Canvas::new(20.0, 10.0);
         canvas.circle([5.0, 2.5], 1.0 / 3.0, [255, 0, 16], None);
         let dashed = Stroke {
-            dashed: true,
+            dash: Dash::Dashes,
             ..Stroke::solid([0, 0, 0], 2.0)
         };
         canvas.line([0.0, 0.0], [1.0, 1.001], dashed);

@@ -53,7 +53,7 @@ impl Quantity {
 }
 
 /// Units that are usual with a prefix.
-const TAKES_PREFIX: [&str; 9] = ["Pa", "J", "N", "s", "m", "W", "Hz", "J/m", "N/m"];
+const TAKES_PREFIX: [&str; 10] = ["Pa", "J", "N", "s", "m", "W", "Hz", "J/m", "N/m", "W/m"];
 const PREFIXES: [&str; 9] = ["p", "n", "µ", "m", "", "k", "M", "G", "T"];
 
 /// Decimal exponent of a positive number, zero for zero.
