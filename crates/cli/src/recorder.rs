@@ -22,6 +22,8 @@ pub(crate) struct Recorder<'a> {
     cells: OwnedCells,
     next: Next,
     last: LastRow,
+    /// The resolved case, with the names of the copies of the files that it reads.
+    resolved: String,
     /// The state at the last row, which is known to be finite.
     good: Saved,
 }
@@ -156,10 +158,11 @@ impl<'a> Recorder<'a> {
             impulses: impulses(simulation),
         });
         let is_new = simulation.step_count() == 0;
+        let resolved = case.resolved_with_copies(ResultsFolder::INPUTS);
         let (history, frames) = if is_new {
             // Also when it is resumed: it may have been killed before its first row or frame. The
             // state comes first, so that where there is a history there is a state.
-            let data = encode(&good, &case.resolved, &last);
+            let data = encode(&good, &resolved, &last);
             write_restart(&folder.restart(), 0, &data)?;
             (
                 HistoryWriter::create(&folder.history(), columns)?,
@@ -183,6 +186,7 @@ impl<'a> Recorder<'a> {
                 restart: Due::after(time, case.output.restart_interval),
             },
             last,
+            resolved,
             good,
         };
         if is_new {
@@ -257,7 +261,7 @@ impl<'a> Recorder<'a> {
         write_restart(
             &self.folder.restart(),
             saved.step,
-            &encode(saved, &self.case.resolved, &self.last),
+            &encode(saved, &self.resolved, &self.last),
         )
     }
 
