@@ -6,7 +6,7 @@ use jstsph_material::models::{Hencky, HenckyVonMises, NeoHookean};
 use jstsph_material::{MaterialSpec, Property, Thermal};
 use jstsph_solver::{
     Condition, ConditionKind, Formulation, Integrator, Model, ModelBody, Quadrature, Scheme,
-    Signal, Simulation, SmoothingReference, Stabilisation, Viscosity, Weights,
+    Signal, Simulation, SmoothingReference, Stabilisation, StepLimit, Viscosity, Weights,
 };
 use jstsph_sph::Kernel;
 use jstsph_tensor::Vec3;
@@ -25,6 +25,7 @@ pub fn particles(smoothing_ratio: f64) -> Scheme {
         formulation: Formulation::MomentumGradientCofactorJacobian,
         integrator: Integrator::Leapfrog,
         cfl: 0.5,
+        step_limit: StepLimit::Stretch,
         stabilisation: Stabilisation {
             upwind: 0.3,
             ..Default::default()

@@ -2,7 +2,8 @@
 
 use jstsph_geometry::Dimension;
 use jstsph_solver::{
-    Biharmonic, Formulation, Heat, Integrator, Jst, Quadrature, Scheme, Stabilisation, Viscosity,
+    Biharmonic, Formulation, Heat, Integrator, Jst, Quadrature, Scheme, Stabilisation, StepLimit,
+    Viscosity,
 };
 use jstsph_sph::Kernel;
 
@@ -18,6 +19,7 @@ use crate::value::number;
 pub(crate) struct Time {
     pub(crate) settings: TimeSettings,
     pub(crate) integrator: Integrator,
+    pub(crate) step_limit: StepLimit,
     pub(crate) smallest_time_step: f64,
     pub(crate) inertia_scale: f64,
     pub(crate) resolved: toml::Table,
@@ -30,17 +32,21 @@ pub(crate) fn read_time(node: &Node) -> Result<Time, Problem> {
     let integrator = section.choice("integrator", schema::INTEGRATORS)?;
     let cfl = section.number_or(
         "cfl",
-        if integrator == Integrator::Leapfrog {
-            0.5
-        } else {
-            0.3
+        match integrator {
+            Integrator::Leapfrog => 0.5,
+            Integrator::TvdRungeKutta => 0.3,
+            // The same fractions of their limits on the imaginary axis as the leapfrog's.
+            Integrator::SspRungeKutta => 0.4,
+            Integrator::RungeKutta4 => 0.8,
         },
     )?;
+    let step_limit = section.choice("limit", schema::STEP_LIMITS)?;
     let smallest_time_step = section.number("smallest_step")?;
     let inertia_scale = read_inertia_scale(&mut section)?;
     Ok(Time {
         settings: TimeSettings { end, cfl },
         integrator,
+        step_limit,
         smallest_time_step,
         inertia_scale,
         resolved: section.finish(),
@@ -105,6 +111,7 @@ pub(crate) fn read_scheme(
         formulation,
         integrator: time.integrator,
         cfl: time.settings.cfl,
+        step_limit: time.step_limit,
         stabilisation,
         projection,
         inertia_scale: time.inertia_scale,

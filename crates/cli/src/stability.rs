@@ -3,7 +3,7 @@
 
 use jstsph_case::Case;
 use jstsph_output::Energies;
-use jstsph_solver::{Integrator, Simulation};
+use jstsph_solver::{Integrator, Simulation, StepLimit};
 
 /// Initial speed over wave speed from which a case is an impact: a body of metal that stops from
 /// this speed yields.
@@ -26,7 +26,11 @@ impl Stability {
         if case.model.scheme.integrator != Integrator::Leapfrog {
             return None;
         }
-        let limit = simulation.elastic_cfl_limit();
+        // Of the acoustic limit the CFL number is a fraction.
+        let limit = match case.model.scheme.step_limit {
+            StepLimit::Stretch => simulation.elastic_cfl_limit(),
+            StepLimit::Acoustic => 1.0,
+        };
         Some(Self {
             limit,
             is_exceeded: case.time.cfl > limit,

@@ -6,7 +6,7 @@ use jstsph_geometry::{Axis, Body, Dimension, Lattice, Shape, Spacing, build_body
 use jstsph_material::{MaterialSpec, library};
 use jstsph_solver::{
     Formulation, Integrator, Model, ModelBody, ModelObstacle, Quadrature, Scheme, Simulation,
-    SmoothingReference, Stabilisation, Weights,
+    SmoothingReference, Stabilisation, StepLimit, Weights,
 };
 use jstsph_sph::Kernel;
 use jstsph_tensor::Vec3;
@@ -23,6 +23,7 @@ fn scheme(quadrature: Quadrature, integrator: Integrator) -> Scheme {
         formulation: Formulation::MomentumGradientCofactorJacobian,
         integrator,
         cfl: 0.3,
+        step_limit: StepLimit::Stretch,
         stabilisation: Stabilisation {
             upwind: if bonds { 0.0 } else { 0.15 },
             ..Stabilisation::default()

@@ -8,7 +8,7 @@ use jstsph_geometry::{Axis, Dimension, Lattice, Shape, Spacing, build_body, face
 use jstsph_material::library;
 use jstsph_solver::{
     Formulation, Integrator, Model, ModelBody, ModelObstacle, Probe, ProbeKind, Quadrature, Scheme,
-    Simulation, SmoothingReference, Stabilisation, Weights,
+    Simulation, SmoothingReference, Stabilisation, StepLimit, Weights,
 };
 use jstsph_sph::Kernel;
 use jstsph_tensor::Vec3;
@@ -79,6 +79,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             formulation: Formulation::MomentumGradientCofactorJacobian,
             integrator: Integrator::Leapfrog,
             cfl,
+            step_limit: StepLimit::Acoustic,
             stabilisation: Stabilisation {
                 upwind: if bonds { 0.0 } else { 0.15 },
                 ..Default::default()

@@ -2,7 +2,7 @@
 
 use crate::SolverError;
 use crate::constraint::MAX_OBSTACLES;
-use crate::model::{Formulation, Integrator, Model, Quadrature};
+use crate::model::{Formulation, Integrator, Model, Quadrature, StepLimit};
 
 /// Refuses a model whose parts do not fit together, or whose numbers are out of range.
 pub(crate) fn check(model: &Model) -> Result<(), SolverError> {
@@ -130,6 +130,8 @@ fn check_eulerian(model: &Model) -> Result<(), SolverError> {
         || stabilisation.hourglass != 0.0
     {
         "has no stabilisation but artificial viscosity: the others live in the reference configuration"
+    } else if scheme.step_limit == StepLimit::Acoustic {
+        "has no acoustic limit of the time step: its operator changes with the positions"
     } else if model.heat.is_some_and(|heat| heat.conduction) {
         "does not conduct heat"
     } else {

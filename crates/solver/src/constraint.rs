@@ -276,7 +276,7 @@ impl Particle<'_> {
         normal: Vec3,
         step: &ContactStep,
     ) -> bool {
-        let given = if self.stage == Stage::Average {
+        let given = if self.stage == Stage::End {
             // The contact law has already added its part to the impulses of the step.
             slot.given
         } else {
@@ -300,30 +300,33 @@ impl Particle<'_> {
 }
 
 /// Which momenta of a step constraints act on, hence which part of the step their impulses are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Stage {
     /// Those after a kick of the leapfrog.
     Whole,
-    /// u* of a Runge-Kutta step: half of the impulse remains in the average.
-    First,
-    /// u** of a Runge-Kutta step.
-    Second,
-    /// uⁿ⁺¹, the average. Friction may use what the impulses of the whole step leave of it: a
-    /// particle that has come to rest in both stages is at rest, and not at half its velocity.
-    Average,
+    /// Those within a Runge-Kutta step.
+    Within {
+        /// Part of an impulse that remains in uⁿ⁺¹.
+        factor: f64,
+        /// Whether the step begins.
+        first: bool,
+    },
+    /// uⁿ⁺¹ of a Runge-Kutta step. Friction may use what the impulses of the whole step leave of it: a
+    /// particle that has come to rest in all stages is at rest, and not at half its velocity.
+    End,
 }
 
 impl Stage {
     /// Part of an impulse that is felt at the end of the step.
     pub(crate) fn factor(self) -> f64 {
         match self {
-            Self::Whole | Self::Average => 1.0,
-            Self::First | Self::Second => 0.5,
+            Self::Whole | Self::End => 1.0,
+            Self::Within { factor, .. } => factor,
         }
     }
 
     fn begins(self) -> bool {
-        matches!(self, Self::Whole | Self::First)
+        matches!(self, Self::Whole | Self::Within { first: true, .. })
     }
 }
 

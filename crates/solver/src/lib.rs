@@ -1,7 +1,7 @@
 //! The mixed total Lagrangian SPH scheme {p, F, H, J}: time integration, stabilisation, energies.
 //!
 //! Start at [`Simulation::advance_step`], then the two integrators, `leapfrog.rs` and
-//! `tvd_runge_kutta.rs`: each line of them is one function. Particles carry x, p and J; evaluation
+//! `runge_kutta.rs`: each line of them is one function. Particles carry x, p and J; evaluation
 //! points (the particles themselves, or the midpoints of lattice bonds) carry F, H, the plastic
 //! history and the stress. The solver reads and writes no files and knows no units but SI.
 //!
@@ -10,7 +10,7 @@
 //! use jstsph_material::library;
 //! use jstsph_solver::{
 //!     Formulation, Integrator, Model, ModelBody, Quadrature, Scheme, Simulation,
-//!     SmoothingReference, Stabilisation, Weights,
+//!     SmoothingReference, Stabilisation, StepLimit, Weights,
 //! };
 //! use jstsph_tensor::Vec3;
 //!
@@ -42,6 +42,7 @@
 //!         formulation: Formulation::MomentumGradientCofactorJacobian,
 //!         integrator: Integrator::Leapfrog,
 //!         cfl: 0.5,
+//!         step_limit: StepLimit::Stretch,
 //!         stabilisation: Stabilisation::default(),
 //!         projection: false,
 //!         inertia_scale: 1.0,
@@ -78,6 +79,7 @@ mod probe;
 mod profile;
 mod projection;
 mod reference;
+mod runge_kutta;
 mod save;
 mod simulation;
 mod state;
@@ -86,7 +88,6 @@ mod stress;
 #[cfg(test)]
 mod testing;
 mod time_step;
-mod tvd_runge_kutta;
 mod viscosity;
 
 pub use energy::{Energies, Momenta, PaperEnergies};
@@ -95,7 +96,7 @@ pub use fields::ParticleFields;
 pub use model::{
     Biharmonic, Condition, ConditionKind, Formulation, Heat, Integrator, Jst, Laplacian, Model,
     ModelBody, ModelObstacle, ObstacleHeat, Quadrature, Scheme, Signal, SignalFunction,
-    SmoothingReference, Stabilisation, Viscosity, Weights,
+    SmoothingReference, Stabilisation, StepLimit, Viscosity, Weights,
 };
 pub use probe::{EdgePart, Field, Probe, ProbeKind, Statistic};
 pub use profile::{Phase, PhaseObserver};

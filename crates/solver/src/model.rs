@@ -258,10 +258,23 @@ impl Formulation {
 /// Time integration scheme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Integrator {
-    /// Two-stage TVD Runge-Kutta (3.16): the paper's.
+    /// Two-stage TVD Runge-Kutta (3.16): the paper's. Second order.
     TvdRungeKutta,
+    /// Three-stage strong-stability-preserving Runge-Kutta of Shu & Osher 1988. Third order.
+    SspRungeKutta,
+    /// Five-stage low-storage Runge-Kutta of Carpenter & Kennedy 1994. Fourth order.
+    RungeKutta4,
     /// Staggered leapfrog: half the work per step, twice to three times the step.
     Leapfrog,
+}
+
+/// What the stable time step is a fraction of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StepLimit {
+    /// Δx λ_min / c over all points (3.17): the paper's, pessimistic where few points are compressed.
+    Stretch,
+    /// 2/ω_max of the elastic operator of the deformed bodies: twice as long in extreme deformation.
+    Acoustic,
 }
 
 /// Laplacian of the JST dissipation.
@@ -344,8 +357,10 @@ pub struct Scheme {
     pub formulation: Formulation,
     /// Time integration.
     pub integrator: Integrator,
-    /// Fraction of spacing / wave speed taken as time step (3.17).
+    /// Fraction of the limit taken as time step (3.17).
     pub cfl: f64,
+    /// The limit.
+    pub step_limit: StepLimit,
     /// Stabilisation.
     pub stabilisation: Stabilisation,
     /// Whether resultants and torques of internal forces and dissipation are projected out (3.15).

@@ -81,8 +81,8 @@ impl Simulation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Integrator, Quadrature};
-    use crate::testing::{elastic, model, scheme};
+    use crate::model::Quadrature;
+    use crate::testing::{INTEGRATORS, elastic, model, scheme};
     use std::sync::Mutex;
 
     #[derive(Debug, Default)]
@@ -96,7 +96,7 @@ mod tests {
 
     #[test]
     fn every_phase_of_a_step_is_heard_and_the_state_is_the_same() {
-        for integrator in [Integrator::Leapfrog, Integrator::TvdRungeKutta] {
+        for integrator in INTEGRATORS {
             let model = model([4, 4, 3], elastic(), scheme(Quadrature::Bonds, integrator));
             let mut plain = Simulation::new(model).unwrap();
             let mut watched = plain.clone();

@@ -224,6 +224,9 @@ impl Simulation {
                 vec![self.initial_energy, self.first_dt, self.smallest_stretch],
             ),
         ];
+        if let Some(limit) = &self.acoustic {
+            arrays.push(("acoustic_limit".to_owned(), limit.saved().to_vec()));
+        }
         if let Some(heat) = &self.heat {
             arrays.push(("heat_generated".to_owned(), heat.generated.clone()));
             arrays.push(("heat_supplied".to_owned(), heat.supplied.clone()));
@@ -282,6 +285,9 @@ impl Simulation {
             slot.impulse = impulse;
             slot.corrections = *count as u32;
             slot.cache = Default::default();
+        }
+        if let Some(limit) = &mut self.acoustic {
+            limit.restore(arrays.get("acoustic_limit", 3)?);
         }
         if let Some(heat) = &mut self.heat {
             arrays.scalars("heat_generated", &mut heat.generated)?;

@@ -8,15 +8,16 @@ use crate::error::Place;
 use crate::eulerian::CurrentKernels;
 use crate::force::Loads;
 use crate::heat::{HeatProcess, HeatStep, OutOfRange};
-use crate::model::{Formulation, Integrator, Model, Scheme};
+use crate::model::{Formulation, Model, Scheme};
 use crate::profile::{Observer, Phase};
 use crate::reference::Reference;
+use crate::runge_kutta::{Method, Registers};
 use crate::state::{Impulse, Ledger, State, Work, Workspace};
 use crate::strain::Strains;
-use crate::time_step::{StableStep, stable_step};
+use crate::time_step::{AcousticLimit, StableStep};
 use crate::{
-    SolverError, consistency, dissipation, force, leapfrog, parallel, projection, strain, stress,
-    tvd_runge_kutta,
+    SolverError, consistency, dissipation, force, leapfrog, parallel, projection, runge_kutta,
+    strain, stress,
 };
 
 /// A simulation: a [`Model`] that moves.
@@ -38,8 +39,8 @@ pub struct Simulation {
     eulerian: Option<Box<CurrentKernels>>,
     /// Temperatures that change, when they do.
     pub(crate) heat: Option<Box<HeatProcess>>,
-    /// State at the beginning of a Runge-Kutta step; empty for the leapfrog.
-    pub(crate) start: Option<Box<State>>,
+    /// States that a Runge-Kutta step remembers; empty for the leapfrog.
+    pub(crate) registers: Option<Box<Registers>>,
     /// Equivalent plastic strain of the points, kept when a dissipation depends on it.
     plastic_strain: Vec<f64>,
     pub(crate) observer: Observer,
@@ -53,6 +54,8 @@ pub struct Simulation {
     pub(crate) smallest_stretch: f64,
     /// First time step, to which the floor is relative; zero before it is known.
     pub(crate) first_dt: f64,
+    /// The limit by the frequency of the deformed bodies, when it is used.
+    pub(crate) acoustic: Option<Box<AcousticLimit>>,
 }
 
 impl Simulation {
@@ -100,8 +103,8 @@ impl Simulation {
         if model.scheme.formulation == Formulation::Displacement {
             work.displacement = vec![Vec3::zeros(); particles];
         }
-        let start =
-            (model.scheme.integrator == Integrator::TvdRungeKutta).then(|| Box::new(state.clone()));
+        let registers = Method::of(model.scheme.integrator)
+            .map(|method| Box::new(Registers::new(&method, &state)));
         let plastic = if model.scheme.stabilisation.jst.is_some() {
             points
         } else {
@@ -112,6 +115,7 @@ impl Simulation {
             eulerian: (model.scheme.formulation == Formulation::EulerianKernel)
                 .then(|| Box::new(CurrentKernels::new(&model, &reference))),
             heat: HeatProcess::new(&model, &reference, &materials)?,
+            acoustic: AcousticLimit::new(&model.scheme, &reference),
             scheme: model.scheme,
             reference,
             materials,
@@ -120,7 +124,7 @@ impl Simulation {
             ledger,
             prescribed,
             obstacles,
-            start,
+            registers,
             plastic_strain: vec![0.0; plastic],
             observer: None,
             time: 0.0,
@@ -155,9 +159,9 @@ impl Simulation {
         if self.time >= end {
             return Ok(());
         }
-        match self.scheme.integrator {
-            Integrator::Leapfrog => leapfrog::step(self, end)?,
-            Integrator::TvdRungeKutta => tvd_runge_kutta::step(self, end)?,
+        match Method::of(self.scheme.integrator) {
+            None => leapfrog::step(self, end)?,
+            Some(method) => runge_kutta::step(self, &method, end)?,
         }
         self.step += 1;
         Ok(())
@@ -181,7 +185,7 @@ impl Simulation {
         self.dt
     }
 
-    /// Whether the momenta belong to the time of the positions (always with TVD-RK2, at the
+    /// Whether the momenta belong to the time of the positions (always with Runge-Kutta methods, at the
     /// beginning and the end of a run with the leapfrog).
     #[must_use]
     pub fn is_synchronised(&self) -> bool {
@@ -212,38 +216,11 @@ impl Simulation {
         &self.scheme
     }
 
-    /// The stable time step of the present state, s, CFL number included.
-    #[must_use]
-    pub fn stable_time_step(&self) -> f64 {
-        self.scheme.cfl * stable_step(&self.reference, &self.state).time
-    }
-
     pub(crate) fn strains(&self) -> Strains {
         Strains {
             formulation: self.scheme.formulation,
             quadrature: self.scheme.quadrature,
         }
-    }
-
-    /// Δt = CFL min Δx λ_min / c (3.17), cut at `end`; checks that strains are finite.
-    pub(crate) fn next_time_step(&mut self, end: f64) -> Result<f64, SolverError> {
-        let stable = stable_step(&self.reference, &self.state);
-        let dt = self.scheme.cfl * stable.time;
-        if !dt.is_finite() {
-            return Err(self.not_finite(stable.point));
-        }
-        self.smallest_stretch = stable.stretch;
-        if self.first_dt == 0.0 {
-            self.first_dt = dt;
-        }
-        let limit = self.scheme.smallest_time_step * self.first_dt;
-        if dt < limit {
-            return Err(self.too_small(dt, limit, &stable));
-        }
-        // A last step below a thousandth of the stable one would come from round-off in the sum of
-        // steps; the present one is stretched over it instead.
-        let rest = end - self.time;
-        Ok(if rest <= dt * 1.001 { rest } else { dt })
     }
 
     /// G of the present momenta, where anything asks for it.
@@ -415,7 +392,7 @@ impl Simulation {
 
     // Errors, with everything a user needs to find the place.
 
-    fn not_finite(&self, point: usize) -> SolverError {
+    pub(crate) fn not_finite(&self, point: usize) -> SolverError {
         let (body, index) = self.reference.owner_of_point(point);
         let position = self.reference.point_position[point].into();
         SolverError::NotFinite {
@@ -425,7 +402,7 @@ impl Simulation {
         }
     }
 
-    fn too_small(&self, time_step: f64, limit: f64, stable: &StableStep) -> SolverError {
+    pub(crate) fn too_small(&self, time_step: f64, limit: f64, stable: &StableStep) -> SolverError {
         let (body, index) = self.reference.owner_of_point(stable.point);
         SolverError::TimeStepTooSmall {
             place: self.place(body, index, self.current_point_position(body, index)),

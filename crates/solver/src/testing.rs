@@ -9,7 +9,7 @@ use jstsph_tensor::{Mat3, Vec3};
 
 use crate::model::{
     Formulation, Integrator, Model, ModelBody, ModelObstacle, Quadrature, Scheme,
-    SmoothingReference, Stabilisation, Weights,
+    SmoothingReference, Stabilisation, StepLimit, Weights,
 };
 
 /// A reproducible source of numbers (SplitMix64, Steele, Lea & Flood 2014).
@@ -36,7 +36,12 @@ impl Random {
 }
 
 pub(crate) const QUADRATURES: [Quadrature; 2] = [Quadrature::Particles, Quadrature::Bonds];
-pub(crate) const INTEGRATORS: [Integrator; 2] = [Integrator::Leapfrog, Integrator::TvdRungeKutta];
+pub(crate) const INTEGRATORS: [Integrator; 4] = [
+    Integrator::Leapfrog,
+    Integrator::TvdRungeKutta,
+    Integrator::SspRungeKutta,
+    Integrator::RungeKutta4,
+];
 
 /// The full system without stabilisation.
 pub(crate) fn scheme(quadrature: Quadrature, integrator: Integrator) -> Scheme {
@@ -51,6 +56,7 @@ pub(crate) fn scheme(quadrature: Quadrature, integrator: Integrator) -> Scheme {
         formulation: Formulation::MomentumGradientCofactorJacobian,
         integrator,
         cfl: 0.3,
+        step_limit: StepLimit::Stretch,
         stabilisation: Stabilisation::default(),
         projection: !bonds,
         inertia_scale: 1.0,

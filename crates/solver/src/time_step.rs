@@ -10,6 +10,9 @@ use crate::reference::Reference;
 use crate::state::State;
 
 mod bound;
+mod choice;
+
+pub(crate) use choice::AcousticLimit;
 
 /// Candidates whose upper bound is below the present maximum by this factor are skipped; it is far
 /// above the round-off of either number, so that skipping never changes the maximum.

@@ -8,7 +8,7 @@ use jstsph_material::library;
 use jstsph_solver::{
     Biharmonic, Condition, ConditionKind, Formulation, Integrator, Jst, Laplacian, Model,
     ModelBody, ModelObstacle, Quadrature, Scheme, Signal, Simulation, SmoothingReference,
-    Stabilisation, Viscosity, Weights,
+    Stabilisation, StepLimit, Viscosity, Weights,
 };
 use jstsph_sph::Kernel;
 use jstsph_tensor::Vec3;
@@ -83,6 +83,7 @@ fn model(quadrature: Quadrature, integrator: Integrator, formulation: Formulatio
             formulation,
             integrator,
             cfl: 0.3,
+            step_limit: StepLimit::Acoustic,
             stabilisation: Stabilisation {
                 jst: Some(Jst {
                     harmonic: 0.0,
@@ -135,7 +136,11 @@ fn advancing_a_step_allocates_nothing() {
         "the allocator is not the counting one"
     );
     for quadrature in [Quadrature::Particles, Quadrature::Bonds] {
-        for integrator in [Integrator::Leapfrog, Integrator::TvdRungeKutta] {
+        for integrator in [
+            Integrator::Leapfrog,
+            Integrator::TvdRungeKutta,
+            Integrator::RungeKutta4,
+        ] {
             for formulation in [
                 Formulation::MomentumGradientCofactorJacobian,
                 Formulation::MomentumGradient,

@@ -1,6 +1,8 @@
 //! Keys of `[time]`, `[scheme]`, `[stabilisation]`, `[heat]` and `[output]`.
 
-use jstsph_solver::{Formulation, Integrator, Laplacian, Quadrature, SmoothingReference, Weights};
+use jstsph_solver::{
+    Formulation, Integrator, Laplacian, Quadrature, SmoothingReference, StepLimit, Weights,
+};
 use jstsph_sph::Kernel;
 
 use super::Kind::{Choice, Count, Flag, Number, Other, Table, TableOr};
@@ -20,8 +22,14 @@ pub const TIME: &[Key] = &[
     key(
         "cfl",
         Number(Measure::NUMBER, Limit::Positive),
-        Derived("0.5 for leapfrog, 0.3 for tvd-rk2"),
-        "time step times wave speed over spacing (3.17)",
+        Derived("0.5 for leapfrog, 0.3 for tvd-rk2, 0.4 for ssp-rk3, 0.8 for rk4"),
+        "fraction of the limit taken as time step (3.17)",
+    ),
+    key(
+        "limit",
+        Choice(|| names(STEP_LIMITS)),
+        Default("\"stretch\""),
+        "stretch: spacing over wave speed times the smallest stretch (3.17); acoustic: 2/frequency of the deformed bodies, twice as long where few points are compressed",
     ),
     key(
         "integrator",
@@ -53,6 +61,14 @@ pub const TIME: &[Key] = &[
 pub(crate) const INTEGRATORS: &[(&str, Integrator)] = &[
     ("leapfrog", Integrator::Leapfrog),
     ("tvd-rk2", Integrator::TvdRungeKutta),
+    ("ssp-rk3", Integrator::SspRungeKutta),
+    ("rk4", Integrator::RungeKutta4),
+];
+
+/// Limits of the time step by name.
+pub(crate) const STEP_LIMITS: &[(&str, StepLimit)] = &[
+    ("stretch", StepLimit::Stretch),
+    ("acoustic", StepLimit::Acoustic),
 ];
 
 /// `[scheme]`.

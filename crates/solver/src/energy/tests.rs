@@ -117,13 +117,14 @@ fn stages_of_runge_kutta_book_the_change_of_kinetic_energy() {
         let time = f64::from(step) * dt;
         simulation.open_books();
         simulation.save_start();
-        for stage in [Stage::First, Stage::Second] {
+        for first in [true, false] {
             randomise(&mut simulation, &mut random);
-            simulation.stage(dt);
-            simulation.constrain(time + dt, dt, stage);
+            simulation.stage(dt, 0.5);
+            let factor = 0.5;
+            simulation.constrain(time + dt, dt, Stage::Within { factor, first });
         }
-        simulation.average_with_start();
-        simulation.constrain(time + dt, dt, Stage::Average);
+        simulation.average_with_start(0.5);
+        simulation.constrain(time + dt, dt, Stage::End);
         simulation.close_books();
     }
     assert_books_close(&simulation, start, "three steps");

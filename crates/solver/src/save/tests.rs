@@ -1,5 +1,7 @@
 use super::*;
-use crate::model::{Biharmonic, Integrator, Jst, Laplacian, Model, Quadrature, Stabilisation};
+use crate::model::{
+    Biharmonic, Integrator, Jst, Laplacian, Model, Quadrature, Stabilisation, StepLimit,
+};
 use crate::testing::{INTEGRATORS, QUADRATURES, impact, in_pool, model, scheme};
 
 /// Plates in plastic impact with everything that a scheme can have switched on somewhere.
@@ -10,6 +12,7 @@ fn models(nodes: [usize; 3]) -> Vec<Model> {
             for stabilised in [false, true] {
                 let mut scheme = scheme(quadrature, integrator);
                 if stabilised {
+                    scheme.step_limit = StepLimit::Acoustic;
                     scheme.stabilisation = Stabilisation {
                         jst: Some(Jst {
                             harmonic: 1e-3,

@@ -1,0 +1,164 @@
+//! The step a run takes next: the stable one by the chosen limit, cut at the end.
+
+use super::stable_step;
+use crate::SolverError;
+use crate::acoustic::Frequency;
+use crate::model::{Scheme, StepLimit};
+use crate::reference::Reference;
+use crate::simulation::Simulation;
+use crate::state::State;
+
+/// Steps after which the frequency of the deformed bodies is computed again at the latest: it costs
+/// about as much as eight steps.
+const LATEST: u64 = 256;
+
+/// Steps before which it is not.
+const EARLIEST: u64 = 32;
+
+/// Relative change of the stretch limit by which it is computed again in between.
+const CHANGE: f64 = 0.05;
+
+/// The largest frequency of the deformed bodies, computed now and then. In between the step follows
+/// the smallest stretch.
+#[derive(Clone, Debug)]
+pub(crate) struct AcousticLimit {
+    frequency: Frequency,
+    /// 2/ω_max over the time of [`stable_step`] at the last look; zero before the first.
+    gain: f64,
+    /// Time of [`stable_step`] at the last look, s.
+    time: f64,
+    /// Step of the last look.
+    step: u64,
+}
+
+impl AcousticLimit {
+    /// For schemes that ask for it.
+    pub(crate) fn new(scheme: &Scheme, reference: &Reference) -> Option<Box<Self>> {
+        (scheme.step_limit == StepLimit::Acoustic).then(|| {
+            Box::new(Self {
+                frequency: Frequency::new(reference),
+                gain: 0.0,
+                time: 0.0,
+                step: 0,
+            })
+        })
+    }
+
+    /// How much longer than `time`, that of [`stable_step`], the step may be.
+    fn gain(
+        &mut self,
+        reference: &Reference,
+        scheme: &Scheme,
+        state: &State,
+        (time, step): (f64, u64),
+    ) -> f64 {
+        let age = step - self.step;
+        let changed = (time - self.time).abs() > CHANGE * self.time;
+        if self.gain == 0.0 || age >= LATEST || (changed && age >= EARLIEST) {
+            let limit = reference
+                .bodies
+                .iter()
+                .map(|body| 2.0 / self.frequency.largest(reference, body, scheme, Some(state)));
+            self.gain = limit.fold(f64::INFINITY, f64::min) / time;
+            self.time = time;
+            self.step = step;
+        }
+        self.gain
+    }
+
+    /// What a restart needs.
+    #[expect(clippy::cast_precision_loss, reason = "no run makes 2^53 steps")]
+    pub(crate) fn saved(&self) -> [f64; 3] {
+        [self.gain, self.time, self.step as f64]
+    }
+
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "written by `saved`"
+    )]
+    pub(crate) fn restore(&mut self, saved: &[f64]) {
+        (self.gain, self.time, self.step) = (saved[0], saved[1], saved[2] as u64);
+    }
+}
+
+impl Simulation {
+    /// The stable time step of the present state, s, CFL number included.
+    #[must_use]
+    pub fn stable_time_step(&self) -> f64 {
+        let time = stable_step(&self.reference, &self.state).time;
+        let gain = self.acoustic.clone().map_or(1.0, |mut limit| {
+            let now = (time, self.step);
+            limit.gain(&self.reference, &self.scheme, &self.state, now)
+        });
+        self.scheme.cfl * gain * time
+    }
+
+    /// Δt = CFL min Δx λ_min / c (3.17), or the acoustic limit, cut at `end`; checks that strains are
+    /// finite.
+    pub(crate) fn next_time_step(&mut self, end: f64) -> Result<f64, SolverError> {
+        let stable = stable_step(&self.reference, &self.state);
+        if !stable.time.is_finite() {
+            return Err(self.not_finite(stable.point));
+        }
+        let mut dt = self.scheme.cfl * stable.time;
+        if let Some(limit) = &mut self.acoustic {
+            let now = (stable.time, self.step);
+            dt *= limit.gain(&self.reference, &self.scheme, &self.state, now);
+        }
+        self.smallest_stretch = stable.stretch;
+        if self.first_dt == 0.0 {
+            self.first_dt = dt;
+        }
+        let limit = self.scheme.smallest_time_step * self.first_dt;
+        if dt < limit {
+            return Err(self.too_small(dt, limit, &stable));
+        }
+        // A last step below a thousandth of the stable one would come from round-off in the sum of
+        // steps; the present one is stretched over it instead.
+        let rest = end - self.time;
+        Ok(if rest <= dt * 1.001 { rest } else { dt })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Integrator, Quadrature};
+    use crate::testing::{elastic, model, scheme};
+    use jstsph_tensor::Mat3;
+
+    #[test]
+    fn the_frequency_is_computed_when_it_is_old_or_the_stretch_has_changed() {
+        let scheme = Scheme {
+            step_limit: StepLimit::Acoustic,
+            ..scheme(Quadrature::Bonds, Integrator::Leapfrog)
+        };
+        let simulation = Simulation::new(model([5, 4, 3], elastic(), scheme)).unwrap();
+        let (reference, mut state) = (simulation.reference(), simulation.state().clone());
+        let mut limit = AcousticLimit::new(&scheme, reference).unwrap();
+        let mut gain = |state: &State, time: f64, step: u64| {
+            limit.gain(reference, &scheme, state, (time, step))
+        };
+        let time = stable_step(reference, &state).time;
+        let first = gain(&state, time, 7);
+        assert!((0.8..1.4).contains(&first), "{first}");
+        let half = Mat3::identity() * 0.5;
+        state.deformation_gradient.fill(half);
+        state.cofactor.fill(jstsph_tensor::cofactor(&half));
+        // Within the given times and step numbers the old answer stands, whatever the state.
+        let marked = 3.0 * time;
+        assert_eq!(gain(&state, marked, 7 + EARLIEST - 1), first);
+        assert_eq!(
+            gain(&state, time * (1.0 + 0.5 * CHANGE), 7 + LATEST - 1),
+            first
+        );
+        let third = gain(&state, marked, 7 + EARLIEST);
+        assert!((third * 6.0 / first - 1.0).abs() < 1e-9, "{third}");
+        let last = gain(&state, marked, 7 + EARLIEST + LATEST);
+        assert_eq!(last, third);
+        state.deformation_gradient[0].m11 = f64::NAN;
+        let broken = gain(&state, marked, 8 + EARLIEST + 2 * LATEST);
+        assert!(!(broken * marked).is_normal());
+    }
+}
