@@ -228,14 +228,12 @@ impl<'a> Recorder<'a> {
         }
         self.last_frame(simulation, fields)?;
         self.restart(simulation.save())?;
-        self.writer.wait()?;
         Ok(())
     }
 
     /// Writes the state as it is, for a run that is to be continued.
     pub(crate) fn interrupt(&mut self, simulation: &Simulation) -> Result<PathBuf, OutputError> {
-        self.restart(simulation.save())?;
-        self.last_restart()
+        self.restart(simulation.save())
     }
 
     /// Puts the simulation back to its last good state and writes that.
@@ -245,8 +243,7 @@ impl<'a> Recorder<'a> {
             self.last_frame(simulation, fields)?;
         }
         let good = std::mem::replace(&mut self.good, simulation.save());
-        self.restart(good)?;
-        self.last_restart()
+        self.restart(good)
     }
 
     fn last_frame(
@@ -260,16 +257,13 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    fn restart(&mut self, saved: Saved) -> Result<(), OutputError> {
+    /// Writes a state and waits until it is there: whoever is killed later loses what came after it.
+    fn restart(&mut self, saved: Saved) -> Result<PathBuf, OutputError> {
         // Rows that a power failure takes must not be missing before a state that it leaves.
         self.history.sync()?;
         let step = saved.step;
         let data = encode(saved, &self.resolved, &self.last);
-        self.writer.restart(step, data)
-    }
-
-    /// The restart file given last, once it is there.
-    fn last_restart(&mut self) -> Result<PathBuf, OutputError> {
+        self.writer.restart(step, data)?;
         let path = self.writer.wait()?;
         Ok(path.unwrap_or_else(|| self.folder.restart()))
     }

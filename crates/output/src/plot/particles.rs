@@ -372,7 +372,8 @@ mod tests {
             .shapes
             .iter()
             .filter(|shape| matches!(shape, Shape::Patch { fill, .. } if *fill == middle));
-        assert_eq!(filled.count(), 1);
+        // Of one cell: what is below its pieces, and one piece.
+        assert_eq!(filled.count(), 2);
         plot.section = Some(Section {
             axis: Axis::Z,
             at: 9.0,
