@@ -154,6 +154,19 @@ fn messages_of_the_troubleshooting_page_are_those_of_the_program() {
 }
 
 #[test]
+fn every_case_is_in_the_gallery_with_a_small_picture() {
+    let page = read(&root().join("docs/gallery.md"));
+    for case in files_below(&root().join("cases"), &["toml"]) {
+        let name = case.file_stem().expect("a name").to_string_lossy();
+        let heading = format!("\n## {name}\n");
+        assert!(page.contains(&heading), "run docs/gallery/make: {name}");
+        let picture = root().join(format!("docs/gallery/{name}.png"));
+        let size = std::fs::metadata(&picture).map_or(0, |file| file.len());
+        assert!((1..150_000).contains(&size), "{name}: {size} bytes");
+    }
+}
+
+#[test]
 fn every_page_is_in_the_summary() {
     let docs = root().join("docs");
     let summary = docs.join("SUMMARY.md");

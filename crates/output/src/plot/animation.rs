@@ -14,8 +14,8 @@ const SHOWN: u16 = 10;
 /// The same of the last one.
 const LAST_SHOWN: u16 = 150;
 /// Colours of a GIF: so many shades from text to paper, of the field's colours, of these darkened as
-/// for edges and rims, and of these brightened as for highlights.
-const SHADES: [u8; 4] = [24, 128, 56, 40];
+/// for edges of cells and for rims of dots, and of these brightened as for highlights.
+const SHADES: [u8; 5] = [16, 96, 64, 40, 40];
 
 /// The files an animation can be written to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -105,11 +105,14 @@ fn apng(rasters: impl Iterator<Item = io::Result<Raster>>, count: usize) -> io::
 /// from picture to picture.
 fn palette(colours: ColourMap) -> Vec<Colour> {
     let shades = |count: u8| (0..count).map(move |i| f64::from(i) / f64::from(count - 1));
-    let [greys, plain, dark, bright] = SHADES;
+    let [greys, plain, edges, rims, bright] = SHADES;
     let greys = shades(greys).map(|share| mix(INK, PAPER, share));
     let plain = shades(plain).map(|place| colours.at(place));
-    let dark = shades(dark).map(|place| mix(colours.at(place), INK, 0.35));
+    // Thin lines cover half a pixel.
+    let edges = shades(edges).map(|place| mix(colours.at(place), INK, 0.14));
+    let rims = shades(rims).map(|place| mix(colours.at(place), INK, 0.35));
     let bright = shades(bright).map(|place| mix(colours.at(place), PAPER, 0.4));
+    let dark = edges.chain(rims);
     greys.chain(plain).chain(dark).chain(bright).collect()
 }
 
@@ -189,9 +192,9 @@ mod tests {
             let colour = ColourMap::Viridis.at(f64::from(i) / 1000.0);
             let number = indexed(&colour, &palette, &mut known)[0];
             let found = palette[usize::from(number)];
-            // Half the distance of two of 128 shades of a range of about 256.
-            let parts = colour.iter().zip(found);
-            assert!(parts.into_iter().all(|(a, b)| a.abs_diff(b) <= 3), "{i}");
+            // Half the distance of two of 96 shades, whose parts change by at most 7.
+            let mut parts = colour.iter().zip(found);
+            assert!(parts.all(|(a, b)| a.abs_diff(b) <= 4), "{i}");
         }
     }
 
