@@ -500,9 +500,26 @@ impl HeatProcess {
             // Absolute zero; a NaN is outside too.
             ("temperature", Some((0.0, f64::MAX))),
         ];
+        let temperatures = &state.temperature[body.particles.clone()];
+        // One parallel pass says that all is well; only when it is not the first offence is looked
+        // for, property by property.
+        let allowed = limits.iter().filter_map(|(_, range)| *range);
+        let (low, high) = allowed.fold((0.0_f64, f64::MAX), |(low, high), range| {
+            (low.max(range.0), high.min(range.1))
+        });
+        let all_inside = parallel::reduce(
+            temperatures.len(),
+            &|part| {
+                let part = temperatures[part].iter();
+                part.fold(true, |inside, t| inside & (*t >= low) & (*t <= high))
+            },
+            &|a, b| a && b,
+        );
+        if all_inside {
+            return Ok(());
+        }
         for (property, range) in limits {
             let Some((low, high)) = range else { continue };
-            let temperatures = &state.temperature[body.particles.clone()];
             let outside = |t: &f64| !(*t >= low && *t <= high);
             if let Some(particle) = temperatures.iter().position(outside) {
                 return Err(OutOfRange {
