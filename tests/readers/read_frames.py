@@ -49,6 +49,33 @@ def read_vtk(path):
     return vtk_to_numpy(grid.GetPoints().GetData()), arrays, types, connectivity, time
 
 
+def read_vtkhdf(path):
+    """The same of a VTKHDF file."""
+    reader = vtk.vtkHDFReader()
+    reader.SetFileName(str(path))
+    reader.UpdateInformation()
+    times = reader.GetOutputInformation(0).Get(vtk.vtkStreamingDemandDrivenPipeline.TIME_STEPS())
+    reader.Update()
+    grid = reader.GetOutput()
+    data = grid.GetPointData()
+    arrays = {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
+    types = {grid.GetCellType(i) for i in range(grid.GetNumberOfCells())}
+    connectivity = vtk_to_numpy(grid.GetCells().GetConnectivityArray())
+    return vtk_to_numpy(grid.GetPoints().GetData()), arrays, types, connectivity, times
+
+
+def compare_vtkhdf(path, frame):
+    """A VTKHDF file has what the VTU file beside it has, bit for bit."""
+    points, arrays, types, connectivity, time = frame
+    found = read_vtkhdf(path)
+    check(np.array_equal(found[0], points) and found[0].dtype == points.dtype, f"{path}: points")
+    check(set(found[1]) == set(arrays), f"{path}: fields {sorted(found[1])}")
+    for name, values in arrays.items():
+        check(np.array_equal(found[1][name], values) and found[1][name].dtype == values.dtype, f"{path}: {name}")
+    check(found[2] == types and np.array_equal(found[3], connectivity), f"{path}: cells")
+    check(tuple(found[4]) == (time,), f"{path}: times {found[4]}")
+
+
 def read_history(folder):
     with open(folder / "history.csv", newline="") as file:
         rows = list(csv.DictReader(file))
@@ -74,9 +101,13 @@ def read_folder(folder):
     check(times[-1] == summary["simulated_time"], f"{folder}: the last frame is not the end")
     written = sorted((folder / "frames").glob("*.vtu"))
     check(written == [path for _, path in collection], f"{folder}: frames.pvd does not list the frames")
+    hdf = sorted((folder / "frames").glob("*.vtkhdf"))
+    check(not hdf or [path.with_suffix(".vtkhdf") for _, path in collection] == hdf, f"{folder}: VTKHDF files")
     compared = 0
     for time, path in collection:
         points, arrays, types, connectivity, vtk_time = read_vtk(path)
+        if hdf:
+            compare_vtkhdf(path.with_suffix(".vtkhdf"), (points, arrays, types, connectivity, vtk_time))
         mesh = meshio.read(path)
         check(vtk_time == time, f"{path}: TimeValue {vtk_time}, frames.pvd {time}")
         check(points.shape == (summary["particles"], 3), f"{path}: {points.shape} points")
@@ -108,7 +139,8 @@ def read_folder(folder):
         stress = last["cauchy_stress"].reshape(-1, 3, 3).astype(float)
         rounding = 1e-6 * np.abs(stress).max()
         check(np.allclose(stress.trace(axis1=1, axis2=2) / 3, last["pressure"], rtol=0, atol=rounding), f"{folder}: pressure")
-    print(f"{folder.name}: {len(collection)} frames of {summary['particles']} particles, {found:.6g} plastic strain")
+    also = " (and as VTKHDF)" if hdf else ""
+    print(f"{folder.name}: {len(collection)} frames{also} of {summary['particles']} particles, {found:.6g} plastic strain")
 
 
 def compare(path, arrays, row, kind):

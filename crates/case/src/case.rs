@@ -9,6 +9,7 @@ use crate::boundary::read_boundary;
 use crate::document::{self, Node, Value};
 use crate::error::{CaseError, Origin, Problem, Source};
 use crate::include;
+use crate::inputs::{self, InputFile};
 use crate::material::{self, Materials};
 use crate::obstacle::read_obstacle;
 use crate::parameters;
@@ -39,6 +40,8 @@ pub struct Case {
     pub resolved: String,
     /// What is allowed but looks like a mistake; one sentence each.
     pub warnings: Vec<String>,
+    /// Included files and those of shapes.
+    pub inputs: Vec<InputFile>,
     source: Source,
     places: Vec<BodyPlace>,
 }
@@ -238,6 +241,7 @@ fn read(name: &str, source: &mut Source) -> Result<Case, Problem> {
         probes,
         resolved: resolved::write(&section.finish()),
         warnings,
+        inputs: inputs::collect(&document, context.folder)?,
         source: source.clone(),
         places,
     })

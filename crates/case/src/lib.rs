@@ -43,8 +43,10 @@ mod body;
 mod boundary;
 mod case;
 mod document;
+mod drawing;
 mod error;
 mod include;
+mod inputs;
 mod json_schema;
 mod list;
 mod markdown;
@@ -69,6 +71,7 @@ pub mod units;
 
 pub use case::{Case, FrameCells, Interval, OutputSettings, Precision, TimeSettings, load, parse};
 pub use error::{CaseError, InputError, Place};
+pub use inputs::InputFile;
 pub use json_schema::json_schema;
 pub use list::{List, ListEntry, lists};
 pub use markdown::markdown;

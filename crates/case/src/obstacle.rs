@@ -1,12 +1,13 @@
 //! `[[obstacle]]`: rigid surfaces, their contact law and motion.
 
 use jstsph_contact::{Chain, ContactError, Friction, Law, Obstacle, Profile, Surface};
-use jstsph_geometry::Dimension;
+use jstsph_geometry::{Contour, Dimension};
 use jstsph_solver::{ModelBody, ModelObstacle, ObstacleHeat, Signal};
 use jstsph_tensor::Vec3;
 
 use crate::body::Context;
 use crate::document::{Node, Value};
+use crate::drawing;
 use crate::error::Problem;
 use crate::schema::{self, Limit};
 use crate::section::{Field, Section};
@@ -166,6 +167,7 @@ fn read_surface(
     }
     let mut part = Section::open(&field.node, &field.path, field.kind.keys())?;
     let surface = match form {
+        "drawing" => read_lines(&mut part, context, fillets)?,
         "plane" => Surface::plane(
             part.vector("point", dimension)?,
             part.vector("normal", dimension)?,
@@ -220,6 +222,38 @@ fn read_surface(
     };
     section.record(form, part.finish());
     Ok(surface)
+}
+
+/// Walls along the lines of a drawing.
+fn read_lines(
+    part: &mut Section<'_>,
+    context: &Context<'_>,
+    radii: &mut Vec<f64>,
+) -> Result<Surface, Problem> {
+    let path = part.path().to_owned();
+    if context.dimension != Dimension::PlaneStrain {
+        return Err(part
+            .problem(
+                "file",
+                format!("`{path}`: lines of a drawing are for plane strain"),
+            )
+            .help("in 3d use plane, sphere, cylinder, box or stl"));
+    }
+    let drawing = drawing::read(part, context.folder)?;
+    let free_point = drawing::pair(&part.need("free_point")?)?;
+    part.record("free_point", free_point.to_vec());
+    let profile = Profile::around(&drawing.contours, free_point).map_err(|error| {
+        let key = match error {
+            ContactError::FreePointOnWall { .. } => "free_point",
+            _ => "file",
+        };
+        part.problem(
+            key,
+            format!("`{path}`: {}: {error}", drawing.path.display()),
+        )
+    })?;
+    radii.extend(drawing.contours.iter().flat_map(Contour::radii));
+    Ok(Surface::Profile(profile))
 }
 
 fn read_profile(

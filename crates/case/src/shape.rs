@@ -7,6 +7,7 @@ use jstsph_geometry::{Axis, Dimension, Polygon, Shape};
 use jstsph_tensor::Vec3;
 
 use crate::document::Node;
+use crate::drawing;
 use crate::error::Problem;
 use crate::schema::{self, Limit};
 use crate::section::{Field, Section};
@@ -47,10 +48,10 @@ fn read(
         }
         _ => {
             let mut part = Section::open(&inner.node, &inner.path, inner.kind.keys())?;
-            let shape = if kind == "stl" {
-                Shape::Mesh(read_stl(&mut part, folder)?)
-            } else {
-                read_primitive(kind, &mut part, dimension)?
+            let shape = match kind {
+                "stl" => Shape::Mesh(read_stl(&mut part, folder)?),
+                "drawing" => read_outline(&mut part, folder)?,
+                _ => read_primitive(kind, &mut part, dimension)?,
             };
             outer.record(kind, part.finish());
             shape
@@ -123,23 +124,31 @@ fn read_polygon(part: &mut Section<'_>) -> Result<Polygon, Problem> {
                 .map_err(|error| field.problem(format!("`{}`: {error}", field.path)))?
         }
     };
-    let extrusion = match part.field("extrude")? {
-        None => None,
-        Some(field) => {
-            let ends = read_lengths(&field, Limit::Any)?;
-            let [low, high] = ends[..] else {
-                return Err(field.problem(format!(
-                    "`{}` must have 2 entries, the lowest and the highest z, but has {}",
-                    field.path,
-                    ends.len()
-                )));
-            };
-            part.record("extrude", ends);
-            Some([low, high])
-        }
-    };
+    let extrusion = read_extrusion(part)?;
     Polygon::new(corners, extrusion)
         .map_err(|error| part.problem("points", format!("`{}`: {error}", part.path())))
+}
+
+/// What the lines of a drawing enclose.
+fn read_outline(part: &mut Section<'_>, folder: &Path) -> Result<Shape, Problem> {
+    let drawing = drawing::read(part, folder)?;
+    let extrusion = read_extrusion(part)?;
+    Shape::from_contours(&drawing.contours, extrusion).map_err(|error| {
+        let path = part.path();
+        part.problem(
+            "file",
+            format!("`{path}`: {}: {error}", drawing.path.display()),
+        )
+    })
+}
+
+fn read_extrusion(part: &mut Section<'_>) -> Result<Option<[f64; 2]>, Problem> {
+    let Some(field) = part.field("extrude")? else {
+        return Ok(None);
+    };
+    let ends = drawing::pair(&field)?;
+    part.record("extrude", ends.to_vec());
+    Ok(Some(ends))
 }
 
 /// The corners of a closed outline whose fillets are cut into pieces of 5°.
@@ -180,7 +189,7 @@ pub(crate) fn read_points(field: &Field<'_>) -> Result<Vec<[f64; 2]>, Problem> {
     Ok(points)
 }
 
-fn read_lengths(field: &Field<'_>, limit: Limit) -> Result<Vec<f64>, Problem> {
+pub(crate) fn read_lengths(field: &Field<'_>, limit: Limit) -> Result<Vec<f64>, Problem> {
     let items = field.items()?.into_iter().enumerate();
     items
         .map(|(place, node)| {

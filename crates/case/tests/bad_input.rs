@@ -156,7 +156,7 @@ fn missing_keys_are_named_with_their_meaning() {
     expect(
         "plane = { point = [0, 0], normal = [0, 1] }\n",
         "",
-        &["c.toml:19:1: obstacle.floor needs one of: profile, plane"],
+        &["c.toml:19:1: obstacle.floor needs one of: profile, drawing, plane"],
     );
 }
 

@@ -22,6 +22,8 @@ pub(crate) struct Recorder<'a> {
     writer: Writer,
     next: Next,
     last: LastRow,
+    /// The resolved case, with the names of the copies of the files that it reads.
+    resolved: String,
     /// The state at the last row, which is known to be finite.
     good: Saved,
 }
@@ -155,10 +157,11 @@ impl<'a> Recorder<'a> {
             impulses: impulses(simulation),
         });
         let is_new = simulation.step_count() == 0;
+        let resolved = case.resolved_with_copies(ResultsFolder::INPUTS);
         let (history, frames) = if is_new {
             // Also when it is resumed: it may have been killed before its first row or frame. The
             // state comes first, so that where there is a history there is a state.
-            let data = encode(simulation.save(), &case.resolved, &last);
+            let data = encode(simulation.save(), &resolved, &last);
             write_restart(&folder.restart(), 0, &data)?;
             (
                 HistoryWriter::create(&folder.history(), columns)?,
@@ -181,6 +184,7 @@ impl<'a> Recorder<'a> {
                 restart: Due::after(time, case.output.restart_interval),
             },
             last,
+            resolved,
             good: simulation.save(),
         };
         if is_new {
@@ -260,7 +264,7 @@ impl<'a> Recorder<'a> {
         // Rows that a power failure takes must not be missing before a state that it leaves.
         self.history.sync()?;
         let step = saved.step;
-        let data = encode(saved, &self.case.resolved, &self.last);
+        let data = encode(saved, &self.resolved, &self.last);
         self.writer.restart(step, data)
     }
 

@@ -295,7 +295,10 @@ impl Job<'_> {
         }
         let (saved, last, resolved) = decode(data)
             .ok_or_else(|| foreign("its restart file was written by another version".to_owned()))?;
-        if let Some(line) = changed_line(&resolved, &self.case.resolved) {
+        if let Some(line) = changed_line(
+            &resolved,
+            &self.case.resolved_with_copies(ResultsFolder::INPUTS),
+        ) {
             console.error(format_args!(
                 "warning: the case differs from the one that is continued, first in: {line}\n"
             ));
@@ -320,11 +323,15 @@ impl Job<'_> {
         resumed: Option<LastRow>,
     ) -> Result<Recorder<'a>, OutputError> {
         record.write(folder.path())?;
+        let copies = ResultsFolder::INPUTS;
+        for input in &self.case.inputs {
+            folder.write_input(&input.name, &input.bytes)?;
+        }
         atomic_write(&folder.case(), |writer| {
-            writer.write_all(self.case.resolved.as_bytes())
+            writer.write_all(self.case.resolved_with_copies(copies).as_bytes())
         })?;
         atomic_write(&folder.original_case(), |writer| {
-            writer.write_all(self.case.original().as_bytes())
+            writer.write_all(self.case.original_with_copies(copies).as_bytes())
         })?;
         Recorder::start(self.case, folder, self.columns, simulation, resumed)
     }
@@ -434,6 +441,8 @@ impl Job<'_> {
         summary.wall_seconds = wall;
         summary.particle_steps_per_second = particles as f64 * steps_here as f64 / wall.max(1e-9);
         summary.energies = energies(simulation);
+        let ratio = summary.energies.kinetic_to_internal();
+        summary.kinetic_to_internal = ratio.is_finite().then_some(ratio);
         summary.extremes = extremes(simulation, &fields);
         let positions = &simulation.state().position;
         let inverted = reference.bodies.iter().map(|body| {

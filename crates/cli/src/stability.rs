@@ -78,8 +78,7 @@ fn is_impact(case: &Case) -> bool {
 
 /// A warning when a process computed faster than it is has more inertia than it may.
 pub(crate) fn inertia(energies: &Energies, inertia_scale: f64) -> Option<String> {
-    let internal = energies.elastic + energies.plastic;
-    let ratio = energies.kinetic / internal;
+    let ratio = energies.kinetic_to_internal();
     (inertia_scale > 1.0 && ratio > SLOW).then(|| {
         format!(
             "the kinetic energy is {:.1} % of the internal energy at the end, more than {} %: \

@@ -176,3 +176,55 @@ fn a_failed_run_is_a_row_and_a_wrong_value_an_error() {
             .is_file()
     );
 }
+
+#[test]
+fn a_run_can_be_repeated_from_its_results_alone() {
+    let place = Place::new();
+    let root = place.folder.path();
+    std::fs::create_dir(root.join("drawings")).expect("a folder");
+    let drawing =
+        "<svg xmlns=\"http://www.w3.org/2000/svg\"><path d=\"M 0 0 H 4 V -6 H 0 Z\"/></svg>";
+    std::fs::write(root.join("drawings/block.svg"), drawing).expect("written");
+    let text = common::BLOCK.replace(
+        r#"shape = { box = { min = [0, 0], max = ["4 mm", "6 mm"] } }"#,
+        r#"shape = { drawing = { file = "drawings/block.svg", unit = "mm" } }"#,
+    );
+    std::fs::write(root.join("drawn.toml"), text).expect("written");
+    let run = |case: &str, out: &str| {
+        let (case, out) = (root.join(case), root.join(out));
+        let (case, out) = (
+            case.to_str().expect("a name"),
+            out.to_str().expect("a name"),
+        );
+        let outcome = jstsph(&[
+            "run",
+            case,
+            "--out",
+            out,
+            "--quiet",
+            "--force",
+            "--no-pictures",
+        ]);
+        assert_eq!(outcome.code, 0, "{}{}", outcome.out, outcome.err);
+    };
+    run("drawn.toml", "first");
+    std::fs::rename(root.join("first"), root.join("moved")).expect("moved");
+    std::fs::remove_dir_all(root.join("drawings")).expect("removed");
+    run("moved/case.original.toml", "second");
+    run("moved/case.toml", "third");
+    assert_eq!(
+        place.text("moved/history.csv"),
+        place.text("second/history.csv")
+    );
+    assert_eq!(
+        place.text("moved/history.csv"),
+        place.text("third/history.csv")
+    );
+    // Into the folder from which it was read, whose copies are removed at the start.
+    run("second/case.original.toml", "second");
+    assert_eq!(place.text("second/inputs/1-block.svg"), drawing);
+    assert_eq!(
+        place.text("moved/history.csv"),
+        place.text("second/history.csv")
+    );
+}

@@ -64,6 +64,14 @@ pub enum ContactError {
         /// Coordinate of the crossing, m.
         y: f64,
     },
+    /// The point that should say which side is free is on neither.
+    #[error("the point ({x}, {y}) m lies on a line of the drawing; give one beside all of them")]
+    FreePointOnWall {
+        /// Its coordinate, m.
+        x: f64,
+        /// Its coordinate, m.
+        y: f64,
+    },
     /// A negative fillet radius.
     #[error("the fillet radius at point {index} is {radius} m, but must not be negative")]
     NegativeFillet {

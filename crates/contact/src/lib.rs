@@ -42,6 +42,7 @@
 
 mod cache;
 mod chain;
+mod contour;
 mod error;
 mod fillet;
 mod friction;

@@ -130,6 +130,73 @@ pub enum GeometryError {
         /// What the reader says.
         reason: String,
     },
+    /// A file that cannot be read as the drawing it should be.
+    #[error("line {line} of the drawing: {reason}")]
+    UnreadableDrawing {
+        /// Line of the file, from 1.
+        line: usize,
+        /// What is wrong there.
+        reason: String,
+    },
+    /// Something in a drawing that has an outline but cannot be used.
+    #[error("line {line} of the drawing: {item} cannot be used; {remedy}")]
+    UnsupportedDrawing {
+        /// Line of the file, from 1.
+        line: usize,
+        /// What stands there.
+        item: String,
+        /// What to do instead.
+        remedy: &'static str,
+    },
+    /// A drawing has no layer or element of this name.
+    #[error("the drawing has no layer \"{layer}\"; its layers with lines are {}", available.join(", "))]
+    UnknownLayer {
+        /// The name asked for.
+        layer: String,
+        /// The names there are.
+        available: Vec<String>,
+    },
+    /// A drawing without a line.
+    #[error("the drawing has no lines to use")]
+    EmptyDrawing,
+    /// Lines of a drawing fork.
+    #[error(
+        "{count} lines of the drawing end at ({}, {}) m, where only two can be joined; remove lines \
+         drawn twice, put what is no outline onto another layer, or reduce the tolerance (now \
+         {tolerance:.1e} m)", at[0], at[1]
+    )]
+    BranchingContour {
+        /// Lines that end there.
+        count: usize,
+        /// Place, m.
+        at: [f64; 2],
+        /// How far ends may lie apart to be joined, m.
+        tolerance: f64,
+    },
+    /// The outline of a body does not close.
+    #[error(
+        "the outline is open: it begins at ({}, {}) m and ends at ({}, {}) m, {gap:.3e} m apart; \
+         close it, or raise the tolerance above this", start[0], start[1], end[0], end[1]
+    )]
+    OpenContour {
+        /// One end, m.
+        start: [f64; 2],
+        /// The other end, m.
+        end: [f64; 2],
+        /// Their distance, m.
+        gap: f64,
+    },
+    /// Outlines that are not one body with holes.
+    #[error(
+        "the drawing has {count} outlines, and that at ({}, {}) m is no hole of the largest, or \
+         meets another; put one body (with its holes) onto a layer", at[0], at[1]
+    )]
+    SeveralContours {
+        /// Outlines found.
+        count: usize,
+        /// A point of the one in question, m.
+        at: [f64; 2],
+    },
     /// A surface without triangles.
     #[error("the surface has no triangles")]
     EmptyMesh,
@@ -162,6 +229,21 @@ pub enum GeometryError {
         /// Middle of one of them, m.
         y: f64,
         /// Middle of one of them, m.
+        z: f64,
+    },
+    /// A surface that is not that of a solid.
+    #[error(
+        "the surface cuts through itself or lies on itself: {count} pairs of triangles, the first \
+         around ({x}, {y}, {z}) m; join the parts in the program that wrote it"
+    )]
+    SelfIntersectingMesh {
+        /// Number of pairs.
+        count: usize,
+        /// A common point of one pair, m.
+        x: f64,
+        /// A common point of one pair, m.
+        y: f64,
+        /// A common point of one pair, m.
         z: f64,
     },
     /// A part of the shape is too thin for the lattice.

@@ -115,6 +115,18 @@ impl Polygon {
         if beyond % 2 == 1 { -nearest } else { nearest }
     }
 
+    /// Whether a corner of another polygon lies inside: all of it does if the edges do not meet.
+    pub(crate) fn contains(&self, other: &Self) -> bool {
+        let [x, y] = other.points[0];
+        self.planar_distance(&Vec3::new(x, y, 0.0)) < 0.0
+    }
+
+    /// Whether edges of the two have a point in common.
+    pub(crate) fn meets(&self, other: &Self) -> bool {
+        self.edges()
+            .any(|edge| other.edges().any(|second| common(edge, second).is_some()))
+    }
+
     /// Where the line of this y crosses the edges, ascending; their number is even.
     pub(crate) fn crossings(&self, y: f64) -> Vec<f64> {
         let mut found: Vec<f64> = self
@@ -149,12 +161,15 @@ fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
+fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
 /// A point where edges `first` < `second` meet although they are not neighbours, or lie on each
 /// other although they are.
 fn touch(points: &[[f64; 2]], first: usize, second: usize) -> Option<[f64; 2]> {
     let count = points.len();
     let at = |i: usize| points[i % count];
-    let minus = |a: [f64; 2], b: [f64; 2]| [a[0] - b[0], a[1] - b[1]];
     let (a, b, c, d) = (at(first), at(first + 1), at(second), at(second + 1));
     let (along, other) = (minus(b, a), minus(d, c));
     if first + 1 == second || (first == 0 && second == count - 1) {
@@ -162,6 +177,12 @@ fn touch(points: &[[f64; 2]], first: usize, second: usize) -> Option<[f64; 2]> {
         let folds = cross(along, other) == 0.0 && along[0] * other[0] + along[1] * other[1] < 0.0;
         return folds.then_some(if first + 1 == second { b } else { a });
     }
+    common((a, b), (c, d))
+}
+
+/// A point that two segments have in common.
+fn common((a, b): ([f64; 2], [f64; 2]), (c, d): ([f64; 2], [f64; 2])) -> Option<[f64; 2]> {
+    let (along, other) = (minus(b, a), minus(d, c));
     let side = |p: [f64; 2], from: [f64; 2], along: [f64; 2]| cross(along, minus(p, from));
     let (c_side, d_side) = (side(c, a, along), side(d, a, along));
     let (a_side, b_side) = (side(a, c, other), side(b, c, other));

@@ -5,7 +5,7 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use crate::atomic::is_temporary;
+use crate::atomic::{atomic_write, is_temporary};
 use crate::frames::is_frame_file;
 use crate::lock::{FolderLock, LOCK};
 use crate::plot::MARK;
@@ -33,6 +33,9 @@ pub struct ResultsFolder {
 impl ResultsFolder {
     /// Name of the report in the folder.
     pub const REPORT: &str = "report.html";
+
+    /// Folder of the copies of files that the case reads.
+    pub const INPUTS: &str = "inputs";
 
     /// Prepares a folder for a new run: creates it with its parents and the folders for frames and
     /// restart files, and tests that files can be written.
@@ -98,7 +101,13 @@ impl ResultsFolder {
         };
         folder.test_writing()?;
         folder.prepare()?;
-        for place in [folder.path.clone(), folder.frames(), folder.restart()] {
+        let inputs = folder.path.join(Self::INPUTS);
+        for place in [
+            folder.path.clone(),
+            folder.frames(),
+            folder.restart(),
+            inputs,
+        ] {
             remove_matching(&place, |name, _| is_temporary(name))?;
         }
         Ok(folder)
@@ -132,6 +141,17 @@ impl ResultsFolder {
     /// The case that was run as its author wrote it.
     pub fn original_case(&self) -> PathBuf {
         self.path.join(ORIGINAL)
+    }
+
+    /// Writes the copy of a file that the case reads, under a name that begins with a number and `-`.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`].
+    pub fn write_input(&self, name: &str, bytes: &[u8]) -> Result<(), OutputError> {
+        debug_assert!(is_input(name), "another name would never be removed");
+        let folder = self.path.join(Self::INPUTS);
+        fs::create_dir_all(&folder).map_err(OutputError::io("create", &folder))?;
+        atomic_write(&folder.join(name), |writer| writer.write_all(bytes))
     }
 
     /// The report.
@@ -184,6 +204,10 @@ impl ResultsFolder {
         remove_matching(&self.restart(), |name, _| {
             step_of(name).is_some() || is_temporary(name)
         })?;
+        let inputs = self.path.join(Self::INPUTS);
+        remove_matching(&inputs, |name, _| is_input(name) || is_temporary(name))?;
+        // It stays if something else is in it.
+        let _ = fs::remove_dir(&inputs);
         // The marks of a results folder go last: an interrupted removal can be repeated.
         remove_matching(&self.path, |name, path| {
             [HISTORY, CASE, ORIGINAL, Self::REPORT].contains(&name)
@@ -232,6 +256,12 @@ fn remove_matching(
         }
     }
     Ok(())
+}
+
+/// Whether a file is a copy of one that a case reads.
+fn is_input(name: &str) -> bool {
+    let rest = name.trim_start_matches(|c: char| c.is_ascii_digit());
+    rest.len() < name.len() && rest.starts_with('-')
 }
 
 /// Whether a file is a picture that [`crate::plot::Figure`] wrote.
@@ -300,7 +330,9 @@ mod tests {
             path.join("notes.txt"),
             folder.frames().join("view.pvsm"),
             folder.restart().join("why.md"),
+            path.join(ResultsFolder::INPUTS).join("notes.toml"),
         ];
+        folder.write_input("1-steel.toml", b"[material]").unwrap();
         for file in &foreign {
             fs::write(file, "mine").unwrap();
         }
@@ -311,8 +343,16 @@ mod tests {
         left.sort();
         assert_eq!(
             left,
-            ["frames", "notes.txt", "photo.png", "restart", "run.lock"]
+            [
+                "frames",
+                "inputs",
+                "notes.txt",
+                "photo.png",
+                "restart",
+                "run.lock"
+            ]
         );
+        assert_eq!(entries(&path.join("inputs")).unwrap(), ["notes.toml"]);
         assert_eq!(entries(&folder.frames()).unwrap(), ["view.pvsm"]);
         assert_eq!(entries(&folder.restart()).unwrap(), ["why.md"]);
     }

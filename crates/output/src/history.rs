@@ -16,7 +16,7 @@ pub struct HistoryColumn {
 }
 
 /// The columns of `history.csv` before the probes, in order.
-pub const HISTORY_COLUMNS: [HistoryColumn; 15] = [
+pub const HISTORY_COLUMNS: [HistoryColumn; 16] = [
     column("time", "s", "simulated time"),
     column("step", "-", "steps done"),
     column("dt", "s", "size of the last time step"),
@@ -60,6 +60,11 @@ pub const HISTORY_COLUMNS: [HistoryColumn; 15] = [
     ),
     column("jacobian_min", "-", "smallest volume ratio"),
     column("jacobian_max", "-", "largest volume ratio"),
+    column(
+        "kinetic_to_internal",
+        "-",
+        "kinetic over elastic and plastic energy; empty while these are zero",
+    ),
 ];
 
 const fn column(name: &'static str, unit: &'static str, meaning: &'static str) -> HistoryColumn {
@@ -141,6 +146,7 @@ impl HistoryWriter {
             x.jacobian_max,
         ];
         let required = values.len();
+        values.push(e.kinetic_to_internal());
         values.extend_from_slice(row.probes);
         self.table.append_with_gaps(&values, required)
     }
@@ -209,6 +215,7 @@ mod tests {
             ("friction_energy", 10.5),
             ("energy_balance", 11.0),
             ("jacobian_max", 14.0),
+            ("kinetic_to_internal", 4.0 / 11.0),
             ("base_radius", 15.0),
         ] {
             assert_eq!(table.column(name).unwrap()[0], value, "{name}");
@@ -263,6 +270,8 @@ mod tests {
         let table = read_table(&path).unwrap();
         assert_eq!(table.rows.len(), 1);
         assert!(table.column("section").unwrap()[0].is_nan());
+        // Nothing has moved yet.
+        assert!(table.column("kinetic_to_internal").unwrap()[0].is_nan());
         assert_eq!(table.column("length").unwrap(), [2.0]);
     }
 

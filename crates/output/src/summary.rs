@@ -56,6 +56,20 @@ pub struct Energies {
     pub balance: f64,
 }
 
+impl Energies {
+    /// Kinetic over internal (elastic and plastic) energy: below a few percent a process is slow, and
+    /// its forces are those of equilibrium. NaN while there is no internal energy.
+    #[must_use]
+    pub fn kinetic_to_internal(&self) -> f64 {
+        let internal = self.elastic + self.plastic;
+        if internal > 0.0 {
+            self.kinetic / internal
+        } else {
+            f64::NAN
+        }
+    }
+}
+
 /// Extremes over all particles at one instant.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Extremes {
@@ -127,6 +141,10 @@ pub struct Summary {
     pub particle_steps_per_second: f64,
     /// Energies at the end.
     pub energies: Energies,
+    /// [`Energies::kinetic_to_internal`] at the end; none without internal energy, and in files of
+    /// versions without it.
+    #[serde(default)]
+    pub kinetic_to_internal: Option<f64>,
     /// Extremes at the end.
     pub extremes: Extremes,
     /// Lattice cells turned inside out at the end.
@@ -153,6 +171,7 @@ impl Summary {
             wall_seconds: 0.0,
             particle_steps_per_second: 0.0,
             energies: Energies::default(),
+            kinetic_to_internal: None,
             extremes: Extremes::default(),
             inverted_cells: 0,
             probes: BTreeMap::new(),
@@ -215,6 +234,7 @@ mod tests {
                 "contact",
                 "friction",
                 "balance",
+                "kinetic_to_internal",
                 "extremes",
                 "equivalent_plastic_strain",
                 "jacobian_min",
@@ -225,6 +245,19 @@ mod tests {
             ]
         );
         assert!(text.contains("\"status\": \"interrupted\""), "{text}");
+    }
+
+    #[test]
+    fn kinetic_energy_is_compared_with_what_the_material_took_up() {
+        let energies = Energies {
+            kinetic: 1.0,
+            elastic: 2.0,
+            plastic: 18.0,
+            numerical: 100.0,
+            ..Energies::default()
+        };
+        assert_eq!(energies.kinetic_to_internal(), 0.05);
+        assert!(Energies::default().kinetic_to_internal().is_nan());
     }
 
     #[test]

@@ -91,6 +91,12 @@ pub const SHAPES: &[Key] = &[
         "what a closed surface of triangles encloses, 3d only; faces as for a union",
     ),
     key(
+        "drawing",
+        Table(DRAWING),
+        Optional,
+        "what the lines of a DXF or SVG file enclose (in 3d the prism over it); faces as for a union",
+    ),
+    key(
         "union",
         COMBINATION,
         Optional,
@@ -150,6 +156,61 @@ pub(crate) const STL_TRANSLATE: Key = key(
 /// A surface from an STL file as a body.
 pub(crate) const STL: &[Key] = &[STL_FILE, STL_UNIT, STL_SCALE, STL_TRANSLATE];
 
+/// The file of a drawing.
+pub(crate) const DRAWING_FILE: Key = key(
+    "file",
+    Text,
+    Required,
+    "path of the DXF (text) or SVG file, relative to the folder of the case",
+);
+/// Its unit.
+pub(crate) const DRAWING_UNIT: Key = key(
+    "unit",
+    Choice(|| super::names(crate::stl::UNITS)),
+    Required,
+    "unit of the coordinates in the file",
+);
+/// What is taken of it.
+pub(crate) const DRAWING_LAYER: Key = key(
+    "layer",
+    Text,
+    Derived("everything"),
+    "only this layer; in SVG the element with this id or Inkscape label",
+);
+/// What is the same place.
+pub(crate) const DRAWING_TOLERANCE: Key = key(
+    "tolerance",
+    LENGTH,
+    Derived("1e-4 of the diagonal of what is taken"),
+    "distance up to which ends of lines are joined, and by which straight pieces deviate from curves that are no arcs of circles",
+);
+
+/// The outline of a body from a drawing.
+pub(crate) const DRAWING: &[Key] = &[
+    DRAWING_FILE,
+    DRAWING_UNIT,
+    DRAWING_LAYER,
+    STL_SCALE,
+    DRAWING_TRANSLATE,
+    DRAWING_TOLERANCE,
+    EXTRUDE,
+];
+
+/// Where it is put.
+pub(crate) const DRAWING_TRANSLATE: Key = key(
+    "translate",
+    Other("[x, y] lengths", Form::Interval),
+    Optional,
+    "how far the lines are moved, after scaling",
+);
+
+const EXTRUDE: Key = key(
+    "extrude",
+    Other("[lowest z, highest z]", Form::Interval),
+    Derived("none in plane strain, required in 3d"),
+    "extent along z",
+);
+
 /// A polygon.
 pub(crate) const POLYGON: &[Key] = &[
     key(
@@ -167,12 +228,7 @@ pub(crate) const POLYGON: &[Key] = &[
         Derived("all sharp"),
         "radii of the arcs that round the corners, cut into pieces of 5 degrees",
     ),
-    key(
-        "extrude",
-        Other("[lowest z, highest z]", Form::Interval),
-        Derived("none in plane strain, required in 3d"),
-        "extent along z",
-    ),
+    EXTRUDE,
 ];
 
 /// A box.

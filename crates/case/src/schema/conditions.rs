@@ -7,7 +7,10 @@ use super::Kind::{
     Choice, Count, Flag, Number, Other, Signal, Signals, Table, TableOr, Tables, Text, Vector,
 };
 use super::Presence::{Default, Derived, Optional, Required};
-use super::bodies::{STL_FILE, STL_SCALE, STL_TRANSLATE, STL_UNIT};
+use super::bodies::{
+    DRAWING_FILE, DRAWING_LAYER, DRAWING_TOLERANCE, DRAWING_TRANSLATE, DRAWING_UNIT, STL_FILE,
+    STL_SCALE, STL_TRANSLATE, STL_UNIT,
+};
 use super::{AXIS, FIELD, Form, Key, LENGTH, Limit, PLACE, WHERE, key, names};
 use crate::units::Measure;
 
@@ -131,6 +134,12 @@ pub const OBSTACLE: &[Key] = &[
         Optional,
         "plane strain: chains of segments and arcs",
     ),
+    key(
+        "drawing",
+        Table(DRAWING_OBSTACLE),
+        Optional,
+        "plane strain: the lines of a DXF or SVG file",
+    ),
     key("plane", Table(PLANE), Optional, "a plane"),
     key(
         "sphere",
@@ -190,7 +199,9 @@ pub const OBSTACLE: &[Key] = &[
 ];
 
 /// The forms of an obstacle: exactly one of these.
-pub const OBSTACLE_FORMS: &[&str] = &["profile", "plane", "sphere", "cylinder", "box", "stl"];
+pub const OBSTACLE_FORMS: &[&str] = &[
+    "profile", "drawing", "plane", "sphere", "cylinder", "box", "stl",
+];
 
 /// Chains of a profile.
 pub(crate) const PROFILE: &[Key] = &[key("chains", Tables(CHAIN), Required, "chains")];
@@ -223,6 +234,22 @@ pub const CHAIN: &[Key] = &[
         Flag,
         Default("false"),
         "whether the last point is joined to the first",
+    ),
+];
+
+/// Walls along the lines of a drawing.
+pub(crate) const DRAWING_OBSTACLE: &[Key] = &[
+    DRAWING_FILE,
+    DRAWING_UNIT,
+    DRAWING_LAYER,
+    STL_SCALE,
+    DRAWING_TRANSLATE,
+    DRAWING_TOLERANCE,
+    key(
+        "free_point",
+        Other("[x, y] lengths", Form::Interval),
+        Required,
+        "a point on that side of every line on which particles may be",
     ),
 ];
 

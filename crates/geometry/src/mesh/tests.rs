@@ -149,6 +149,60 @@ fn inward_triangles_are_turned_and_open_or_mixed_ones_refused() {
     );
 }
 
+/// Two boxes in one mesh, the second moved and turned about z.
+fn two_boxes(shift: Vec3, angle: f64) -> Option<SelfIntersection> {
+    let (mut points, mut triangles) = cuboid(Vec3::new(1.0, 2.0, 3.0));
+    let (sin, cos) = angle.sin_cos();
+    let second: Vec<Vec3> = points
+        .iter()
+        .map(|x| shift + Vec3::new(cos * x.x - sin * x.y, sin * x.x + cos * x.y, x.z))
+        .collect();
+    let more: Vec<[usize; 3]> = triangles
+        .iter()
+        .map(|t| t.map(|corner| corner + 8))
+        .collect();
+    points.extend(second);
+    triangles.extend(more);
+    TriangleMesh::new(&points, &triangles)
+        .unwrap()
+        .self_intersection()
+}
+
+#[test]
+fn a_surface_that_cuts_or_lies_on_itself_is_found_and_a_solid_is_not() {
+    assert_eq!(sphere(24).self_intersection(), None);
+    // Apart, and one in the other.
+    assert_eq!(two_boxes(Vec3::new(5.0, 0.0, 0.0), 0.3), None);
+    // A corner of the second stands in the first.
+    let found = two_boxes(Vec3::new(0.9, 1.9, 2.9), 0.0).unwrap();
+    let expected = [
+        Vec3::new(1.0, 1.9, 2.9),
+        Vec3::new(0.9, 2.0, 2.9),
+        Vec3::new(0.9, 1.9, 3.0),
+    ];
+    assert!(
+        expected.iter().any(|x| (x - found.at).norm() < 0.11),
+        "{found:?}"
+    );
+    assert!(two_boxes(Vec3::new(0.3, 0.5, 0.4), 0.5).is_some());
+    // Half a box along an axis: no edge passes through a face, but faces lie on each other. So do
+    // those of boxes that stand side by side.
+    assert!(two_boxes(Vec3::new(0.5, 0.0, 0.0), 0.0).is_some());
+    assert!(two_boxes(Vec3::new(1.0, 0.5, 0.0), 0.0).is_some());
+    // A hair's breadth apart.
+    assert_eq!(two_boxes(Vec3::new(1.0 + 1e-4, 0.5, 0.0), 0.0), None);
+}
+
+#[test]
+fn ten_thousands_of_triangles_are_searched_at_once() {
+    // All pairs would be three thousand million tests.
+    let mesh = sphere(140);
+    assert!(mesh.triangles().len() > 70_000);
+    let start = std::time::Instant::now();
+    assert_eq!(mesh.self_intersection(), None);
+    assert!(start.elapsed().as_secs() < 5);
+}
+
 #[test]
 fn text_and_binary_files_give_the_same_surface() {
     let (points, triangles) = cuboid(Vec3::new(1.0, 2.0, 3.0));

@@ -104,6 +104,23 @@ impl Tree {
         beyond.norm_squared()
     }
 
+    /// All triangles of the leaves whose box meets a box.
+    pub(super) fn visit_box(&self, low: &Vec3, high: &Vec3, visit: &mut dyn FnMut(u32)) {
+        let mut stack = vec![0_u32];
+        while let Some(at) = stack.pop() {
+            let node = &self.nodes[at as usize];
+            if (0..3).any(|axis| node.low[axis] > high[axis] || node.high[axis] < low[axis]) {
+                continue;
+            }
+            if node.count == 0 {
+                stack.extend([at + 1, node.first]);
+            } else {
+                let triangles = &self.order[node.first as usize..][..node.count as usize];
+                triangles.iter().for_each(|&triangle| visit(triangle));
+            }
+        }
+    }
+
     /// All triangles whose box the line along x through (·, y, z) meets.
     pub(super) fn visit_line(&self, y: f64, z: f64, visit: &mut dyn FnMut(u32)) {
         let mut stack = vec![0_u32];

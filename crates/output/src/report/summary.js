@@ -54,6 +54,7 @@ function showSummary() {
     const names = { external: "work of loads", contact: "work of obstacles", plastic: "plastic dissipation", friction: "dissipated by friction" };
     tables.append(table("Energies at the end", [
       ...kinds.map((kind) => [names[kind] ?? kind, fixed(energies[kind]), scale.unit]),
+      ...(summary.kinetic_to_internal === null ? [] : [["kinetic, of elastic and plastic", tickText(100 * summary.kinetic_to_internal, 4), "%"]]),
       ["balance, of the largest", energies.balance === null ? "\u2013" : tickText(100 * energies.balance, 4), "%"],
     ]));
     const values = Object.entries(summary.probes);
