@@ -94,7 +94,7 @@ mod file {
             grid.create_dataset("Types").with_u8_data(&cells.types),
             cells.types.len(),
         );
-        floats(grid.create_dataset("Points"), frame.positions, options);
+        floats(grid.create_dataset("Points"), &frame.positions, options);
 
         let mut data = grid.create_group("PointData");
         for (name, values) in &frame.scalars {
@@ -180,7 +180,7 @@ mod file {
                 .map(|i| Vec3::new(0.1, f64::from(i), 1e-300))
                 .collect();
             let stress = vec![Mat3::new(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0); 4];
-            let frame = Frame::new(0.1 + 0.2, 7, &positions)
+            let frame = Frame::new(0.1 + 0.2, 7, &positions[..])
                 .scalar("jacobian", vec![0.1, 0.2, 0.3, -0.4])
                 .tensor("stress", &stress[..])
                 .lattice(Lattice::Quads(&[[0, 1, 2, 3]]));
@@ -215,7 +215,7 @@ mod tests {
 
     #[test]
     fn a_program_without_the_feature_says_how_to_build_one_with_it() {
-        let frame = Frame::new(0.0, 0, &[]);
+        let frame = Frame::new(0.0, 0, Vec::new());
         let error = write_vtkhdf(Path::new("a"), &frame, FrameOptions::default()).unwrap_err();
         assert!(error.to_string().contains("--features vtkhdf"), "{error}");
     }
