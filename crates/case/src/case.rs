@@ -70,6 +70,8 @@ pub struct OutputSettings {
     pub precision: Precision,
     /// Whether frames are compressed.
     pub compression: bool,
+    /// Files of a frame.
+    pub format: FrameFormat,
     /// What frames show in ParaView.
     pub cells: FrameCells,
 }
@@ -81,6 +83,15 @@ pub enum Interval {
     Time(f64),
     /// At each multiple of this number of steps, at least 1.
     Steps(u64),
+}
+
+/// Files of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrameFormat {
+    /// VTU, which pictures and reports read.
+    Vtu,
+    /// VTKHDF beside it.
+    VtuAndVtkhdf,
 }
 
 /// What frames show in ParaView.

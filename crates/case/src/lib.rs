@@ -69,7 +69,9 @@ pub mod expression;
 pub mod schema;
 pub mod units;
 
-pub use case::{Case, FrameCells, Interval, OutputSettings, Precision, TimeSettings, load, parse};
+pub use case::{
+    Case, FrameCells, FrameFormat, Interval, OutputSettings, Precision, TimeSettings, load, parse,
+};
 pub use error::{CaseError, InputError, Place};
 pub use inputs::InputFile;
 pub use json_schema::json_schema;

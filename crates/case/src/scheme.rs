@@ -196,6 +196,7 @@ pub(crate) fn read_output(node: &Node, end: f64) -> Result<(OutputSettings, toml
         fields: read_fields(&mut section)?,
         precision: section.choice("precision", schema::PRECISIONS)?,
         compression: section.flag("compression")?,
+        format: section.choice("format", schema::FORMATS)?,
         cells: section.choice("cells", schema::CELLS)?,
     };
     Ok((settings, section.finish()))

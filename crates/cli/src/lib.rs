@@ -20,6 +20,7 @@
 mod arguments;
 mod check;
 mod console;
+mod copies;
 mod error;
 mod interrupt;
 mod list;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use jstsph_case::{Case, FrameCells, Interval, Precision};
+use jstsph_case::{Case, FrameCells, FrameFormat, Interval, Precision};
 use jstsph_geometry::{Cells, Dimension};
 use jstsph_output::{
     CellKind, Energies, Extremes, Frame, FrameOptions, FrameSeries, HISTORY_COLUMNS, HistoryRow,
@@ -10,6 +10,7 @@ use jstsph_output::{
 };
 use jstsph_solver::{ConditionKind, ParticleFields, Saved, Simulation};
 
+use crate::copies;
 use crate::error::CliError;
 use crate::restart::{LastRow, encode};
 use crate::writer::Writer;
@@ -157,7 +158,7 @@ impl<'a> Recorder<'a> {
             impulses: impulses(simulation),
         });
         let is_new = simulation.step_count() == 0;
-        let resolved = case.resolved_with_copies(ResultsFolder::INPUTS);
+        let resolved = copies::resolved(case);
         let (history, frames) = if is_new {
             // Also when it is resumed: it may have been killed before its first row or frame. The
             // state comes first, so that where there is a history there is a state.
@@ -172,6 +173,10 @@ impl<'a> Recorder<'a> {
                 HistoryWriter::resume(&folder.history(), columns, time)?,
                 FrameSeries::resume(&folder.frames(), options, time)?,
             )
+        };
+        let frames = match case.output.format {
+            FrameFormat::Vtu => frames,
+            FrameFormat::VtuAndVtkhdf => frames.with_vtkhdf()?,
         };
         let mut recorder = Self {
             case,

@@ -57,6 +57,9 @@ pub(crate) fn run(options: &ReportOptions, console: &mut Console<'_>) -> Result<
     if size.is_quantised {
         frames += ", fields rounded to 16 bits";
     }
+    if size.particles < size.total_particles {
+        frames += &format!(", {} of {} particles", size.particles, size.total_particles);
+    }
     let megabytes = size.bytes as f64 / 1e6;
     console.print(format_args!(
         "wrote {} ({megabytes:.1} MB, {frames}); open it in a browser\n",

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use jstsph_case::Case;
+use jstsph_case::{Case, FrameFormat};
 use jstsph_geometry::inverted_cells;
 use jstsph_output::{
-    OutputError, ResultsFolder, RunRecord, Status, Summary, atomic_write, latest_restart,
+    HAS_VTKHDF, OutputError, ResultsFolder, RunRecord, Status, Summary, latest_restart,
     read_latest_restart,
 };
 use jstsph_solver::{Quadrature, Simulation};
@@ -17,6 +17,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::arguments::RunOptions;
 use crate::console::Console;
+use crate::copies;
 use crate::error::CliError;
 use crate::plot;
 use crate::profile::Profile;
@@ -57,6 +58,9 @@ pub(crate) fn run_case(
 ) -> Result<u8, CliError> {
     let columns = extra_columns(case)?;
     let (pool, threads) = pool(case, options.threads)?;
+    if case.output.format == FrameFormat::VtuAndVtkhdf && !HAS_VTKHDF {
+        return Err(CliError::Folder(OutputError::NoVtkhdf));
+    }
     pool.install(|| {
         let simulation =
             Simulation::new(case.model.clone()).map_err(|error| case.setup_error(&error))?;
@@ -295,10 +299,7 @@ impl Job<'_> {
         }
         let (saved, last, resolved) = decode(data)
             .ok_or_else(|| foreign("its restart file was written by another version".to_owned()))?;
-        if let Some(line) = changed_line(
-            &resolved,
-            &self.case.resolved_with_copies(ResultsFolder::INPUTS),
-        ) {
+        if let Some(line) = changed_line(&resolved, &copies::resolved(self.case)) {
             console.error(format_args!(
                 "warning: the case differs from the one that is continued, first in: {line}\n"
             ));
@@ -323,16 +324,7 @@ impl Job<'_> {
         resumed: Option<LastRow>,
     ) -> Result<Recorder<'a>, OutputError> {
         record.write(folder.path())?;
-        let copies = ResultsFolder::INPUTS;
-        for input in &self.case.inputs {
-            folder.write_input(&input.name, &input.bytes)?;
-        }
-        atomic_write(&folder.case(), |writer| {
-            writer.write_all(self.case.resolved_with_copies(copies).as_bytes())
-        })?;
-        atomic_write(&folder.original_case(), |writer| {
-            writer.write_all(self.case.original_with_copies(copies).as_bytes())
-        })?;
+        copies::write(folder, self.case)?;
         Recorder::start(self.case, folder, self.columns, simulation, resumed)
     }
 

@@ -228,3 +228,34 @@ fn a_run_can_be_repeated_from_its_results_alone() {
         place.text("second/history.csv")
     );
 }
+
+#[test]
+fn vtkhdf_frames_are_written_or_refused_before_anything_is() {
+    let place = Place::new();
+    let path = |name: &str| place.folder.path().join(name).display().to_string();
+    let outcome = jstsph(&[
+        "run",
+        &path("block.toml"),
+        "--out",
+        &path("results"),
+        "--set",
+        "output.format=vtkhdf",
+        "--quiet",
+        "--no-pictures",
+    ]);
+    let frame = |end: &str| {
+        place
+            .folder
+            .path()
+            .join("results/frames/frame_000001")
+            .with_extension(end)
+    };
+    if jstsph_output::HAS_VTKHDF {
+        assert_eq!(outcome.code, 0, "{}", outcome.err);
+        assert!(frame("vtkhdf").exists() && frame("vtu").exists());
+    } else {
+        assert_eq!(outcome.code, 2);
+        assert!(outcome.err.contains("--features vtkhdf"), "{}", outcome.err);
+        assert!(!place.folder.path().join("results").exists());
+    }
+}

@@ -66,6 +66,13 @@ pub enum OutputError {
     #[error("lattice cells were asked for, but this body has no lattice; use vertex cells")]
     NoLattice,
 
+    /// VTKHDF files were asked for of a program that cannot write them.
+    #[error(
+        "output.format = \"vtkhdf\" needs a program that was built with it: cargo build --release \
+         --features vtkhdf"
+    )]
+    NoVtkhdf,
+
     /// A table file has a line that cannot be read.
     #[error("{}, line {line}: {problem}", path.display())]
     Table {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::stored::attribute;
 use crate::vtu::{escape_xml, unescape_xml};
-use crate::{Frame, FrameOptions, OutputError, atomic_write, write_vtu};
+use crate::{Frame, FrameOptions, HAS_VTKHDF, OutputError, atomic_write, write_vtkhdf, write_vtu};
 
 /// Name of the collection inside the frames folder.
 const COLLECTION: &str = "frames.pvd";
@@ -108,6 +108,7 @@ pub struct FrameSeries {
     folder: PathBuf,
     options: FrameOptions,
     collection: Collection,
+    has_vtkhdf: bool,
 }
 
 impl FrameSeries {
@@ -117,7 +118,20 @@ impl FrameSeries {
             folder: folder.to_path_buf(),
             options,
             collection: Collection::new(&folder.join(COLLECTION)),
+            has_vtkhdf: false,
         }
+    }
+
+    /// Writes every further frame as `frame_000000.vtkhdf` ... too.
+    ///
+    /// # Errors
+    /// [`OutputError::NoVtkhdf`] unless [`HAS_VTKHDF`].
+    pub fn with_vtkhdf(mut self) -> Result<Self, OutputError> {
+        if !HAS_VTKHDF {
+            return Err(OutputError::NoVtkhdf);
+        }
+        self.has_vtkhdf = true;
+        Ok(self)
     }
 
     /// Continues a series after the frame at or before `time` (s); later frames, and a frame that a
@@ -129,8 +143,10 @@ impl FrameSeries {
         let collection = Collection::resume(&folder.join(COLLECTION), time)?;
         // First the list, then the files: the list never names a file that is not there.
         collection.write()?;
+        let stem = |name: &str| name.split('.').next().unwrap_or_default().to_owned();
         let kept = |name: &str| {
-            name == COLLECTION || collection.entries.iter().any(|(_, file)| file == name)
+            let is_listed = |(_, file): &(f64, String)| stem(file) == stem(name);
+            name == COLLECTION || collection.entries.iter().any(is_listed)
         };
         let listing = std::fs::read_dir(folder).map_err(OutputError::io("list", folder))?;
         for entry in listing {
@@ -145,6 +161,7 @@ impl FrameSeries {
             folder: folder.to_path_buf(),
             options,
             collection,
+            has_vtkhdf: false,
         })
     }
 
@@ -161,6 +178,9 @@ impl FrameSeries {
         let name = format!("frame_{:06}.vtu", self.collection.entries.len());
         let path = self.folder.join(&name);
         write_vtu(&path, frame, self.options)?;
+        if self.has_vtkhdf {
+            write_vtkhdf(&path.with_extension("vtkhdf"), frame, self.options)?;
+        }
         self.collection.add(frame.time, &name)?;
         Ok(path)
     }
@@ -170,7 +190,7 @@ impl FrameSeries {
 pub(crate) fn is_frame_file(name: &str) -> bool {
     let number = name
         .strip_prefix("frame_")
-        .and_then(|rest| rest.strip_suffix(".vtu"));
+        .and_then(|rest| rest.strip_suffix(".vtu").or(rest.strip_suffix(".vtkhdf")));
     name == COLLECTION
         || number.is_some_and(|n| n.len() >= 6 && n.bytes().all(|b| b.is_ascii_digit()))
 }
@@ -234,7 +254,13 @@ mod tests {
             let frame = Frame::new(step as f64, step, &positions);
             series.write(&frame).unwrap();
         }
+        for number in [1, 3] {
+            let name = format!("frame_00000{number}.vtkhdf");
+            std::fs::write(folder.path().join(name), "x").unwrap();
+        }
         let mut series = FrameSeries::resume(folder.path(), options, 1.5).unwrap();
+        assert!(folder.path().join("frame_000001.vtkhdf").exists());
+        assert!(!folder.path().join("frame_000003.vtkhdf").exists());
         assert_eq!(series.last_time(), Some(1.0));
         assert!(!folder.path().join("frame_000002.vtu").exists());
         assert_eq!(
@@ -253,6 +279,7 @@ mod tests {
 
     #[test]
     fn only_our_own_files_are_recognised() {
+        assert!(is_frame_file("frame_000012.vtkhdf") && !is_frame_file("frame_000012.hdf"));
         assert!(is_frame_file("frame_000012.vtu") && is_frame_file("frames.pvd"));
         assert!(!is_frame_file("frame_old.vtu") && !is_frame_file("view.pvsm"));
         assert!(!is_frame_file("frame_12.vtu") && !is_frame_file("other.pvd"));

@@ -173,14 +173,15 @@ impl Elements {
 }
 
 /// Connectivity of the cells in VTK's three arrays.
-struct CellArrays {
-    connectivity: Vec<i64>,
-    offsets: Vec<i64>,
-    types: Vec<u8>,
+pub(crate) struct CellArrays {
+    pub(crate) connectivity: Vec<i64>,
+    /// End of each cell in the connectivity.
+    pub(crate) offsets: Vec<i64>,
+    pub(crate) types: Vec<u8>,
 }
 
 impl CellArrays {
-    fn new(frame: &Frame, kind: CellKind) -> Result<Self, OutputError> {
+    pub(crate) fn new(frame: &Frame, kind: CellKind) -> Result<Self, OutputError> {
         // Cell types of VTK's file formats documentation.
         const VERTEX: u8 = 1;
         const QUAD: u8 = 9;

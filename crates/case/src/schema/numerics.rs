@@ -8,7 +8,7 @@ use jstsph_sph::Kernel;
 use super::Kind::{Choice, Count, Flag, Number, Other, Table, TableOr};
 use super::Presence::{Default, Derived, Optional, Required};
 use super::{COEFFICIENT, Form, Key, Limit, key, names};
-use crate::case::{FrameCells, Precision};
+use crate::case::{FrameCells, FrameFormat, Precision};
 use crate::units::Measure;
 
 /// `[time]`.
@@ -329,6 +329,12 @@ pub const OUTPUT: &[Key] = &[
         "whether frames are compressed",
     ),
     key(
+        "format",
+        Choice(|| names(FORMATS)),
+        Default("\"vtu\""),
+        "files of a frame: VTU only, which pictures and reports read, or VTKHDF beside it (programs built with the feature vtkhdf)",
+    ),
+    key(
         "cells",
         Choice(|| names(CELLS)),
         Default("\"lattice\""),
@@ -354,6 +360,12 @@ pub const FRAME_FIELDS: &[&str] = &[
 /// Precisions by name.
 pub(crate) const PRECISIONS: &[(&str, Precision)] =
     &[("double", Precision::Double), ("single", Precision::Single)];
+
+/// Files of a frame by name.
+pub(crate) const FORMATS: &[(&str, FrameFormat)] = &[
+    ("vtu", FrameFormat::Vtu),
+    ("vtkhdf", FrameFormat::VtuAndVtkhdf),
+];
 
 /// What frames show, by name.
 pub(crate) const CELLS: &[(&str, FrameCells)] = &[

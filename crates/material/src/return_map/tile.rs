@@ -116,7 +116,10 @@ mod tests {
             shear_modulus: 40e9,
         };
         let mut laws = Hardening::examples();
-        laws.retain(|law| law.solve_tile(&problem, &mut TileSolution::ALL_PENDING));
+        laws.retain(|law| {
+            let mut solution = TileSolution::ALL_PENDING;
+            law.solve_tile(&problem, &mut solution)
+        });
         laws
     }
 

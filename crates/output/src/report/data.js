@@ -80,6 +80,9 @@ class Frames {
       const planes = new Planes(await unpack("reference"), this.index.particles);
       this.reference = this.index.reference.map((range) => planes.numbers(range));
     }
+    if (this.index.particles < this.index.total_particles) {
+      this.numbers = new Planes(await unpack("numbers"), this.index.particles).indices();
+    }
     if (this.index.has_faces) {
       const bytes = await unpack("faces");
       this.faces = new Planes(bytes, bytes.length / 4).indices();
@@ -135,6 +138,11 @@ class Frames {
       high[axis] = Math.max(...this.index.kept.map((kept) => kept.positions[axis][1]));
     });
     return { low, high };
+  }
+
+  /** The number in the run of a particle of the report. */
+  particle(place) {
+    return this.numbers ? this.numbers[place] : place;
   }
 
   /** The frame nearest to a time. */

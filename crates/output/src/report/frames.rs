@@ -4,8 +4,10 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use super::Report;
 use super::encode::{Planes, Width};
-use super::{Report, ReportField};
+use super::plan::{FieldEntry, KeptFrame, Plan, Reference, text};
+use super::thin::Thinned;
 use crate::error::require_length;
 use crate::{Collection, OutputError, StoredCells, StoredFrame, read_vtu};
 
@@ -13,13 +15,18 @@ use crate::{Collection, OutputError, StoredCells, StoredFrame, read_vtu};
 /// below 15 MB.
 const BUDGET: usize = 11_000_000;
 
-/// Frames that a film needs; before there are fewer, digits and then components are left out.
-const FLUENT: usize = 24;
+/// The same for frames, undeformed positions and faces together.
+const ALL: usize = 12_500_000;
+
+/// Frames for which there is to be room when particles have to be left out.
+const SCENES: usize = 4;
 
 /// What the page knows about its frames.
 #[derive(Debug, Serialize)]
 pub(super) struct FrameIndex {
     pub(super) particles: usize,
+    /// Particles of the run; if the report has fewer, their numbers are one of its pieces.
+    pub(super) total_particles: usize,
     /// Frames of the run; the report has `kept.len()` of them.
     pub(super) total: usize,
     pub(super) is_quantised: bool,
@@ -30,38 +37,6 @@ pub(super) struct FrameIndex {
     pub(super) reference: Vec<[f64; 2]>,
     /// Whether quadrilaterals between particles are there: cells, or faces of a solid.
     pub(super) has_faces: bool,
-}
-
-/// A field that can be chosen.
-#[derive(Debug, Serialize)]
-pub(super) struct FieldEntry {
-    name: String,
-    label: String,
-    unit: String,
-    source: Source,
-}
-
-/// Where the values of a field are.
-#[derive(Debug, Serialize, Clone, PartialEq, Eq)]
-#[serde(rename_all = "snake_case")]
-enum Source {
-    /// Among the arrays of a frame, at the place of the stored fields.
-    Stored,
-    /// Square root of the sum of squares of other fields, by their places in the list.
-    Magnitude(Vec<usize>),
-    /// Position minus undeformed position along an axis.
-    Displacement(usize),
-}
-
-/// A frame of the report.
-#[derive(Debug, Serialize)]
-pub(super) struct KeptFrame {
-    pub(super) time: f64,
-    step: u64,
-    /// Place among the frames of the run.
-    pub(super) number: usize,
-    positions: Vec<[f64; 2]>,
-    fields: Vec<[f64; 2]>,
 }
 
 /// The frames as text.
@@ -75,6 +50,15 @@ pub(super) struct PackedFrames {
 
 /// Reads the frames of a run and packs as many as fit.
 pub(super) fn pack(folder: &Path, report: &Report<'_>) -> Result<PackedFrames, OutputError> {
+    pack_within(folder, report, [BUDGET, ALL])
+}
+
+/// The same with limits for the frames, and for all together.
+fn pack_within(
+    folder: &Path,
+    report: &Report<'_>,
+    budgets: [usize; 2],
+) -> Result<PackedFrames, OutputError> {
     let files = files(folder)?;
     let Some((_, last)) = files.last() else {
         return Err(OutputError::NothingToDraw {
@@ -83,10 +67,15 @@ pub(super) fn pack(folder: &Path, report: &Report<'_>) -> Result<PackedFrames, O
         });
     };
     let last = read_vtu(last)?;
-    let plan = Plan::choose(report, &last, files.len(), BUDGET)?;
+    let total_particles = last.positions.len();
+    let contents = Contents::choose(report, &last, files.len(), budgets)?;
+    let Contents { plan, thinned, .. } = &contents;
     let mut packed = PackedFrames {
         index: FrameIndex {
-            particles: last.positions.len(),
+            particles: thinned
+                .as_ref()
+                .map_or(total_particles, |t| t.particles.len()),
+            total_particles,
             total: files.len(),
             is_quantised: plan.width == Width::U16,
             axes: plan.axes,
@@ -99,25 +88,109 @@ pub(super) fn pack(folder: &Path, report: &Report<'_>) -> Result<PackedFrames, O
     };
     for number in chosen(files.len(), plan.frames) {
         let frame = read_vtu(&files[number].1)?;
-        require_length("positions", frame.positions.len(), last.positions.len())?;
+        require_length("positions", frame.positions.len(), total_particles)?;
+        let frame = match thinned {
+            Some(thinned) => thinned.frame(&frame),
+            None => frame,
+        };
         let (kept, text) = plan.frame(&frame, number)?;
         packed
             .pieces
             .push((format!("frame-{}", packed.index.kept.len()), text));
         packed.index.kept.push(kept);
     }
-    if let Some(Reference { ranges, text }) = plan.reference(&last)? {
+    if let Some(Reference { ranges, text }) = contents.reference {
         packed.index.reference = ranges;
         packed.pieces.push(("reference".to_owned(), text));
     }
-    let faces = faces(&last.cells, last.positions.len());
-    if !faces.is_empty() {
-        let mut planes = Planes::default();
-        planes.push_indices(faces.iter().flatten().copied());
+    if let Some(faces) = contents.faces {
         packed.index.has_faces = true;
-        packed.pieces.push(("faces".to_owned(), text(planes)?));
+        packed.pieces.push(("faces".to_owned(), faces));
+    }
+    if let Some(numbers) = contents.numbers {
+        packed.pieces.push(("numbers".to_owned(), numbers));
     }
     Ok(packed)
+}
+
+/// What goes into a report beside its frames, and the plan for them.
+struct Contents<'a> {
+    plan: Plan<'a>,
+    thinned: Option<Thinned>,
+    reference: Option<Reference>,
+    faces: Option<String>,
+    /// Numbers of the particles, if not all are there.
+    numbers: Option<String>,
+}
+
+impl<'a> Contents<'a> {
+    /// All particles if one frame of them fits, else as many as leave room for a few frames.
+    fn choose(
+        report: &'a Report<'_>,
+        last: &StoredFrame,
+        total: usize,
+        budgets: [usize; 2],
+    ) -> Result<Self, OutputError> {
+        let faces = faces(&last.cells, last.positions.len());
+        let mut contents = Self::plan(report, last, total, (budgets, &faces, None))?;
+        let mut count = last.positions.len();
+        while contents.plan.frames == 0 {
+            // What one frame and the rest take now, against what a few frames may take.
+            let frame = contents.plan.frame_length;
+            let needed = frame * total.min(SCENES) + contents.fixed();
+            let part = (0.9 * budgets[1] as f64 / needed as f64).min(0.9);
+            count = (count as f64 * part) as usize;
+            let thinned = Thinned::choose(last.positions.len(), &faces, count);
+            count = thinned.particles.len();
+            let few = thinned.frame(last);
+            let kept = thinned.faces.clone();
+            contents = Self::plan(report, &few, total, (budgets, &kept, Some(thinned)))?;
+        }
+        Ok(contents)
+    }
+
+    /// The frames that fit beside the rest; none if not even one does.
+    fn plan(
+        report: &'a Report<'_>,
+        last: &StoredFrame,
+        total: usize,
+        (budgets, faces, thinned): ([usize; 2], &[[u32; 4]], Option<Thinned>),
+    ) -> Result<Self, OutputError> {
+        let plan = Plan::choose(report, last, total, budgets[0])?;
+        let indices = |values: Vec<u32>| {
+            let mut planes = Planes::default();
+            planes.push_indices(values.iter().copied());
+            (!values.is_empty()).then(|| text(planes)).transpose()
+        };
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "a frame of 2^32 particles does not fit into memory"
+        )]
+        let numbers = thinned
+            .iter()
+            .flat_map(|t| t.particles.iter().map(|p| *p as u32));
+        let mut contents = Self {
+            reference: plan.reference(last)?,
+            faces: indices(faces.iter().flatten().copied().collect())?,
+            numbers: indices(numbers.collect())?,
+            plan,
+            thinned,
+        };
+        let left = budgets[1].saturating_sub(contents.fixed());
+        let fitting = left / contents.plan.frame_length.max(1);
+        contents.plan.frames = contents.plan.frames.min(fitting);
+        Ok(contents)
+    }
+
+    /// Characters of what is no frame.
+    fn fixed(&self) -> usize {
+        let reference = self.reference.as_ref().map_or(0, |r| r.text.len());
+        let others = [&self.faces, &self.numbers];
+        let others = others
+            .iter()
+            .map(|text| text.as_ref().map_or(0, String::len));
+        reference + others.sum::<usize>()
+    }
 }
 
 fn files(folder: &Path) -> Result<Vec<(f64, PathBuf)>, OutputError> {
@@ -138,160 +211,6 @@ fn chosen(total: usize, frames: usize) -> Vec<usize> {
             .map(|i| (i * (total - 1) + (frames - 1) / 2) / (frames - 1))
             .collect(),
     }
-}
-
-/// What is kept of a frame.
-struct Plan<'a> {
-    fields: Vec<(&'a ReportField, Source)>,
-    axes: usize,
-    width: Width,
-    frames: usize,
-}
-
-impl<'a> Plan<'a> {
-    /// The most that fits, measured on the last frame, which compresses worst.
-    fn choose(
-        report: &'a Report<'_>,
-        last: &StoredFrame,
-        total: usize,
-        budget: usize,
-    ) -> Result<Self, OutputError> {
-        let axes = if report.is_solid { 3 } else { 2 };
-        let mut plan = Self {
-            fields: sources(&report.fields, last, axes),
-            axes,
-            width: Width::F32,
-            frames: total,
-        };
-        let enough = total.min(FLUENT);
-        plan.frames = plan.affordable(last, total, budget)?;
-        if plan.frames < enough {
-            plan.width = Width::U16;
-            plan.frames = plan.affordable(last, total, budget)?;
-        }
-        if plan.frames < enough {
-            plan.fields
-                .retain(|(field, source)| !field.is_component && *source == Source::Stored);
-            plan.frames = plan.affordable(last, total, budget)?;
-        }
-        Ok(plan)
-    }
-
-    fn affordable(
-        &self,
-        last: &StoredFrame,
-        total: usize,
-        budget: usize,
-    ) -> Result<usize, OutputError> {
-        let (_, text) = self.frame(last, 0)?;
-        Ok((budget / text.len().max(1)).clamp(1, total))
-    }
-
-    fn entries(&self) -> Vec<FieldEntry> {
-        let fields = self.fields.iter();
-        fields
-            .map(|(field, source)| FieldEntry {
-                name: field.name.clone(),
-                label: field.quantity.name.clone(),
-                unit: field.quantity.unit.clone(),
-                source: source.clone(),
-            })
-            .collect()
-    }
-
-    fn frame(
-        &self,
-        frame: &StoredFrame,
-        number: usize,
-    ) -> Result<(KeptFrame, String), OutputError> {
-        let mut planes = Planes::default();
-        let mut kept = KeptFrame {
-            time: frame.time,
-            step: frame.step,
-            number,
-            positions: Vec::with_capacity(self.axes),
-            fields: Vec::with_capacity(self.fields.len()),
-        };
-        for axis in 0..self.axes {
-            let values: Vec<f64> = frame.positions.iter().map(|x| x[axis]).collect();
-            let range = range(&values);
-            planes.push(&values, range, self.width);
-            kept.positions.push(range);
-        }
-        for (field, source) in &self.fields {
-            let values = frame
-                .values(&field.name)
-                .ok_or_else(|| missing(field, frame))?;
-            let range = range(&values);
-            if *source == Source::Stored {
-                planes.push(&values, range, self.width);
-            }
-            kept.fields.push(range);
-        }
-        Ok((kept, text(planes)?))
-    }
-
-    /// Undeformed positions and their extremes, if a displacement is among the fields.
-    fn reference(&self, frame: &StoredFrame) -> Result<Option<Reference>, OutputError> {
-        let is_displacement = |source: &Source| matches!(source, Source::Displacement(_));
-        let Some(displacement) = frame.vector("displacement") else {
-            return Ok(None);
-        };
-        if !self
-            .fields
-            .iter()
-            .any(|(_, source)| is_displacement(source))
-        {
-            return Ok(None);
-        }
-        let mut planes = Planes::default();
-        let mut ranges = Vec::with_capacity(self.axes);
-        for axis in 0..self.axes {
-            let pairs = frame.positions.iter().zip(displacement);
-            let values: Vec<f64> = pairs.map(|(x, u)| x[axis] - u[axis]).collect();
-            let range = range(&values);
-            planes.push(&values, range, self.width);
-            ranges.push(range);
-        }
-        let text = text(planes)?;
-        Ok(Some(Reference { ranges, text }))
-    }
-}
-
-/// The undeformed positions as text.
-struct Reference {
-    ranges: Vec<[f64; 2]>,
-    text: String,
-}
-
-/// Where the values of the fields come from that a frame has.
-fn sources<'a>(
-    fields: &'a [ReportField],
-    frame: &StoredFrame,
-    axes: usize,
-) -> Vec<(&'a ReportField, Source)> {
-    let known: Vec<&ReportField> = fields
-        .iter()
-        .filter(|field| frame.values(&field.name).is_some())
-        .collect();
-    let place = |name: &str| known.iter().position(|field| field.name == name);
-    let suffixes = ["x", "y", "z"];
-    let source = |field: &ReportField| {
-        if frame.vector(&field.name).is_some() {
-            let parts = suffixes[..axes].iter();
-            let places: Option<Vec<usize>> = parts
-                .map(|suffix| place(&format!("{}_{suffix}", field.name)))
-                .collect();
-            return places.map_or(Source::Stored, Source::Magnitude);
-        }
-        let axis = field.name.strip_prefix("displacement_");
-        let axis = axis.and_then(|suffix| suffixes.iter().position(|other| *other == suffix));
-        match axis.filter(|axis| *axis < axes && frame.vector("displacement").is_some()) {
-            Some(axis) => Source::Displacement(axis),
-            None => Source::Stored,
-        }
-    };
-    known.iter().map(|field| (*field, source(field))).collect()
 }
 
 /// Cells of a plane body, outer faces of a solid; none unless every particle is the corner of a
@@ -340,32 +259,10 @@ fn faces(cells: &StoredCells, particles: usize) -> Vec<[u32; 4]> {
     }
 }
 
-/// Least and most value.
-fn range(values: &[f64]) -> [f64; 2] {
-    let ends = values
-        .iter()
-        .fold([f64::MAX, f64::MIN], |[low, high], value| {
-            [low.min(*value), high.max(*value)]
-        });
-    if values.is_empty() { [0.0, 0.0] } else { ends }
-}
-
-fn missing(field: &ReportField, frame: &StoredFrame) -> OutputError {
-    OutputError::NoColumn {
-        column: field.name.clone(),
-        columns: frame.value_names(),
-    }
-}
-
-fn text(planes: Planes) -> Result<String, OutputError> {
-    planes.finish().map_err(OutputError::io(
-        "compress frames for",
-        Path::new("report.html"),
-    ))
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::plan::{FLUENT, Source};
+    use super::super::{Report, ReportField};
     use super::*;
     use crate::plot::Quantity;
     use jstsph_tensor::Vec3;
@@ -382,6 +279,38 @@ mod tests {
             many.windows(2)
                 .all(|pair| (27..=28).contains(&(pair[1] - pair[0])))
         );
+    }
+
+    #[test]
+    fn particles_go_when_not_even_one_frame_fits() {
+        let mut report = report();
+        report.fields.push(ReportField {
+            name: "displacement_x".to_owned(),
+            quantity: Quantity::new("displacement", "m"),
+            is_component: true,
+        });
+        let mut last = frame(30_000);
+        last.vectors
+            .push(("displacement".to_owned(), last.positions.clone()));
+        let size = |budget: usize| -> Contents<'_> {
+            Contents::choose(&report, &last, 10, [budget, budget]).unwrap()
+        };
+        let whole = size(4_000_000);
+        assert!(whole.thinned.is_none() && whole.numbers.is_none());
+        assert_eq!(whole.plan.frames, 10);
+        for budget in [250_000, 60_000, 9_000] {
+            let few = size(budget);
+            let plan = &few.plan;
+            assert!(plan.frames * plan.frame_length + few.fixed() <= budget);
+            assert!((SCENES - 1..10).contains(&plan.frames), "{}", plan.frames);
+            let kept = few.thinned.as_ref().unwrap().particles.len();
+            // Positions and one field of two bytes, which are noise, in base 64; beside them the
+            // undeformed positions and the numbers.
+            assert!(
+                kept > budget / 60 && kept < budget / 20,
+                "{kept} of {budget}"
+            );
+        }
     }
 
     fn frame(particles: u32) -> StoredFrame {

@@ -6,6 +6,8 @@
 mod encode;
 mod frames;
 mod page;
+mod plan;
+mod thin;
 
 use std::path::Path;
 
@@ -76,15 +78,20 @@ pub struct ReportSize {
     pub total_frames: usize,
     /// Whether fields have 16 bits instead of 32, to keep the file small.
     pub is_quantised: bool,
+    /// Particles in it.
+    pub particles: usize,
+    /// Particles of the run.
+    pub total_particles: usize,
 }
 
 impl Report<'_> {
     /// Writes the report of the results folder `folder` to `path`, atomically.
     ///
     /// Frames, `case.toml` and, where they exist, `case.original.toml`, `summary.json`, `run.json` and
-    /// `run.log` are read from the folder. The file stays below 15 MB as long as its curves and its last frame do: where
+    /// `run.log` are read from the folder. The file stays below 15 MB as long as its curves do: where
     /// needed fields are rounded to 16 bits, then components of vectors and tensors are
-    /// left out, then frames.
+    /// left out, then frames, and when not one frame fits, particles: an even sample stays, and
+    /// the outer faces of a solid if there is room for them.
     ///
     /// # Errors
     /// [`OutputError::NothingToDraw`] without frames; [`OutputError::Io`], [`OutputError::Json`],
@@ -107,6 +114,8 @@ impl Report<'_> {
             frames: packed.index.kept.len(),
             total_frames: packed.index.total,
             is_quantised: packed.index.is_quantised,
+            particles: packed.index.particles,
+            total_particles: packed.index.total_particles,
         })
     }
 }

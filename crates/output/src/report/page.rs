@@ -106,7 +106,7 @@ pub(super) fn page(
         heading: report.heading,
         version: env!("CARGO_PKG_VERSION"),
         is_solid: report.is_solid,
-        spacing: report.spacing,
+        spacing: report.spacing * sparsity(&packed.index),
         energy_unit: &report.energy_unit,
         probe_units: report
             .probe_units
@@ -154,6 +154,15 @@ pub(super) fn page(
         rest = after;
     }
     Ok(text + rest)
+}
+
+/// By how much the distance of particles is larger when some are left out; faces still join all.
+fn sparsity(index: &FrameIndex) -> f64 {
+    if index.has_faces || index.particles == 0 {
+        return 1.0;
+    }
+    let ratio = index.total_particles as f64 / index.particles as f64;
+    ratio.powf(1.0 / index.axes as f64)
 }
 
 /// JSON that cannot end the script element it stands in, nor begin a comment there.

@@ -92,8 +92,9 @@ function showSummary() {
   element("original-text").textContent = DATA.original_case;
   element("original").hidden = DATA.original_case === "";
   element("log-text").textContent = DATA.log || "No log was recorded.";
-  const { kept, total, is_quantised: isQuantised } = DATA.frames;
+  const { kept, total, is_quantised: isQuantised, particles, total_particles: all, has_faces: hasFaces } = DATA.frames;
   const notes = [];
+  if (particles < all) notes.push(`${whole(particles)} of ${whole(all)} particles are in this report, ${hasFaces ? "all of the surface and a sample of the inside" : "a sample"}; the rest is in frames/.`);
   if (kept.length < total) notes.push(`${kept.length} of ${total} frames are in this report; the rest is in frames/.`);
   if (isQuantised) notes.push("Positions and fields are rounded to 1/65535 of their range to keep this file small.");
   element("frames-note").textContent = notes.join(" ");

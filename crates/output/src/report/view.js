@@ -205,7 +205,7 @@ class View {
     const length = scaleFor("m", this.camera.size);
     // About a millionth of the picture, for all three alike.
     const decimals = Math.max(0, 5 - exponentOf(this.camera.size * length.factor));
-    const rows = [["particle", String(index)]];
+    const rows = [["particle", String(this.frames.particle(index))]];
     ["x", "y", "z"].slice(0, DATA.frames.axes).forEach((name, axis) => {
       const value = this.frame.positions[3 * index + axis] * length.factor;
       rows.push([name, `${tickText(value, decimals)} ${length.unit}`]);
@@ -372,7 +372,7 @@ class View {
     const axes = ["x", "y", "z"].slice(0, DATA.frames.axes);
     const header = ["particle", ...axes.map((axis) => labelled(axis, "m")), labelled(this.field.label, this.field.unit)];
     const rows = Array.from(this.values, (value, i) =>
-      [i, ...axes.map((_, axis) => this.frame.positions[3 * i + axis]), value].join(","));
+      [this.frames.particle(i), ...axes.map((_, axis) => this.frame.positions[3 * i + axis]), value].join(","));
     return [header.map(csvCell).join(","), ...rows, ""].join("\n");
   }
 }

@@ -1,0 +1,222 @@
+//! Frames as VTKHDF files, in programs built with the feature `vtkhdf`.
+//!
+//! Source: VTK's documentation, "VTKHDF file format", version 2.2, unstructured grids.
+
+use std::path::Path;
+
+use crate::{Frame, FrameOptions, OutputError};
+
+/// Whether this program can write VTKHDF files: it was built with the feature `vtkhdf`.
+pub const HAS_VTKHDF: bool = cfg!(feature = "vtkhdf");
+
+/// Writes one frame as a VTKHDF unstructured grid with one time step, atomically.
+///
+/// Points, cells, fields and their components are those of [`write_vtu`](crate::write_vtu), with the
+/// same bits.
+///
+/// # Errors
+/// Those of [`write_vtu`](crate::write_vtu); [`OutputError::NoVtkhdf`] unless [`HAS_VTKHDF`].
+///
+/// # Cost
+/// The arrays are held in memory until the file is complete.
+pub fn write_vtkhdf(path: &Path, frame: &Frame, options: FrameOptions) -> Result<(), OutputError> {
+    #[cfg(feature = "vtkhdf")]
+    return file::write(path, frame, options);
+    #[cfg(not(feature = "vtkhdf"))]
+    {
+        let _ = (path, frame, options);
+        Err(OutputError::NoVtkhdf)
+    }
+}
+
+#[cfg(feature = "vtkhdf")]
+mod file {
+    use std::io;
+    use std::path::Path;
+
+    use hdf5_pure::{AttrValue, DatasetBuilder, Error, FileBuilder};
+
+    use crate::frame::{Components, flatten};
+    use crate::vtu::CellArrays;
+    use crate::{Frame, FrameOptions, OutputError, Precision, atomic_write};
+
+    /// Values of a compressed chunk, at most.
+    const CHUNK: usize = 1 << 16;
+
+    pub(super) fn write(
+        path: &Path,
+        frame: &Frame,
+        options: FrameOptions,
+    ) -> Result<(), OutputError> {
+        frame.check_magnitude(match options.precision {
+            Precision::F32 => f64::from(f32::MAX),
+            Precision::F64 => f64::MAX,
+        })?;
+        let cells = CellArrays::new(frame, options.cells)?;
+        let file = build(frame, &cells, options);
+        atomic_write(path, |writer| {
+            file.finish_to(writer).map_err(|error| match error {
+                Error::Io(error) => error,
+                other => io::Error::other(other),
+            })
+        })
+    }
+
+    fn build(frame: &Frame, cells: &CellArrays, options: FrameOptions) -> FileBuilder {
+        let mut file = FileBuilder::new();
+        let mut grid = file.create_group("VTKHDF");
+        grid.set_attr("Version", AttrValue::I64Array(vec![2, 2]));
+        grid.set_attr(
+            "Type",
+            AttrValue::AsciiString("UnstructuredGrid".to_owned()),
+        );
+        let mut count = |name: &str, number: usize| {
+            grid.create_dataset(name).with_i64_data(&[number as i64]);
+        };
+        count("NumberOfPoints", frame.positions.len());
+        count("NumberOfCells", cells.types.len());
+        count("NumberOfConnectivityIds", cells.connectivity.len());
+        let whole = |dataset: &mut DatasetBuilder, values: usize| {
+            compress(dataset, &[values], options);
+        };
+        let connectivity = grid.create_dataset("Connectivity");
+        whole(
+            connectivity.with_i64_data(&cells.connectivity),
+            cells.connectivity.len(),
+        );
+        // Here the list of ends has a beginning.
+        let offsets: Vec<i64> = [0].iter().chain(&cells.offsets).copied().collect();
+        whole(
+            grid.create_dataset("Offsets").with_i64_data(&offsets),
+            offsets.len(),
+        );
+        whole(
+            grid.create_dataset("Types").with_u8_data(&cells.types),
+            cells.types.len(),
+        );
+        floats(grid.create_dataset("Points"), &frame.positions, options);
+
+        let mut data = grid.create_group("PointData");
+        for (name, values) in &frame.scalars {
+            floats(data.create_dataset(name), values, options);
+        }
+        for (name, values) in &frame.vectors {
+            floats(data.create_dataset(name), values, options);
+        }
+        for (name, values) in &frame.tensors {
+            floats(data.create_dataset(name), values, options);
+        }
+        grid.add_group(data.finish());
+
+        // One step, so that a reader knows its time; all arrays begin at 0.
+        let mut steps = grid.create_group("Steps");
+        steps.set_attr("NSteps", AttrValue::I64(1));
+        steps.create_dataset("Values").with_f64_data(&[frame.time]);
+        steps.create_dataset("NumberOfParts").with_i64_data(&[1]);
+        for name in [
+            "PartOffsets",
+            "PointOffsets",
+            "CellOffsets",
+            "ConnectivityIdOffsets",
+        ] {
+            steps.create_dataset(name).with_i64_data(&[0]);
+        }
+        let mut offsets = steps.create_group("PointDataOffsets");
+        let scalars = frame.scalars.iter().map(|(name, _)| name);
+        let vectors = frame.vectors.iter().map(|(name, _)| name);
+        let tensors = frame.tensors.iter().map(|(name, _)| name);
+        for name in scalars.chain(vectors).chain(tensors) {
+            offsets.create_dataset(name).with_i64_data(&[0]);
+        }
+        steps.add_group(offsets.finish());
+        grid.add_group(steps.finish());
+        file.add_group(grid.finish());
+        file.set_attr("Step", AttrValue::U64(frame.step));
+        file
+    }
+
+    fn floats<T: Components>(dataset: &mut DatasetBuilder, values: &[T], options: FrameOptions) {
+        let flat = flatten(values);
+        match options.precision {
+            #[expect(clippy::cast_possible_truncation, reason = "asked for, and in range")]
+            Precision::F32 => {
+                let single: Vec<f32> = flat.iter().map(|value| *value as f32).collect();
+                dataset.with_f32_data(&single)
+            }
+            Precision::F64 => dataset.with_f64_data(&flat),
+        };
+        match T::NAMES.len() {
+            0 => compress(dataset, &[values.len()], options),
+            components => compress(dataset, &[values.len(), components], options),
+        }
+    }
+
+    /// Shape of an array, in compressed chunks of whole rows if asked for.
+    fn compress(dataset: &mut DatasetBuilder, shape: &[usize], options: FrameOptions) {
+        let wide = |shape: &[usize]| -> Vec<u64> { shape.iter().map(|n| *n as u64).collect() };
+        dataset.with_shape(&wide(shape));
+        if options.compression && shape[0] > 0 {
+            let mut chunk = shape.to_vec();
+            let row: usize = shape[1..].iter().product();
+            chunk[0] = chunk[0].min(CHUNK / row);
+            dataset
+                .with_chunks(&wide(&chunk))
+                .with_shuffle()
+                .with_deflate(1);
+        }
+    }
+
+    #[cfg(test)]
+    mod tests {
+        use super::*;
+        use crate::{CellKind, Lattice};
+        use jstsph_tensor::{Mat3, Vec3};
+
+        #[test]
+        fn every_bit_comes_back() {
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join("a.vtkhdf");
+            let positions: Vec<Vec3> = (0..4)
+                .map(|i| Vec3::new(0.1, f64::from(i), 1e-300))
+                .collect();
+            let stress = vec![Mat3::new(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0); 4];
+            let frame = Frame::new(0.1 + 0.2, 7, &positions[..])
+                .scalar("jacobian", vec![0.1, 0.2, 0.3, -0.4])
+                .tensor("stress", &stress[..])
+                .lattice(Lattice::Quads(&[[0, 1, 2, 3]]));
+            for compression in [false, true] {
+                let options = FrameOptions {
+                    compression,
+                    cells: CellKind::Lattice,
+                    ..FrameOptions::default()
+                };
+                write(&path, &frame, options).unwrap();
+                let file = hdf5_pure::File::open(&path).unwrap();
+                let numbers = |name: &str| file.dataset(&format!("VTKHDF/{name}")).unwrap();
+                assert_eq!(numbers("Points").read_f64().unwrap(), flatten(&positions));
+                assert_eq!(numbers("Points").shape().unwrap(), [4, 3]);
+                assert_eq!(numbers("PointData/stress").shape().unwrap(), [4, 9]);
+                assert_eq!(
+                    numbers("PointData/stress").read_f64().unwrap(),
+                    flatten(&stress)
+                );
+                assert_eq!(numbers("PointData/jacobian").read_f64().unwrap()[3], -0.4);
+                assert_eq!(numbers("Offsets").read_i64().unwrap(), [0, 4]);
+                assert_eq!(numbers("Connectivity").read_i64().unwrap(), [0, 1, 2, 3]);
+                assert_eq!(numbers("Steps/Values").read_f64().unwrap(), [0.1 + 0.2]);
+            }
+        }
+    }
+}
+
+#[cfg(all(test, not(feature = "vtkhdf")))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_program_without_the_feature_says_how_to_build_one_with_it() {
+        let frame = Frame::new(0.0, 0, Vec::new());
+        let error = write_vtkhdf(Path::new("a"), &frame, FrameOptions::default()).unwrap_err();
+        assert!(error.to_string().contains("--features vtkhdf"), "{error}");
+    }
+}
