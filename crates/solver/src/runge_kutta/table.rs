@@ -56,7 +56,7 @@ const TVD_RK2: Method = Method {
     lever_at_end: true,
 };
 
-/// Shu & Osher 1988, (2.18): third order, strong stability preserving. `[eq:ssp-rk3]`
+/// Shu & Osher 1988: third order, strong stability preserving. `[eq:ssp-rk3]`
 const SSP_RK3: Method = Method {
     stages: &[
         with_start(0.0, 1.0),
