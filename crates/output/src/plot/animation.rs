@@ -182,7 +182,7 @@ mod tests {
     #[test]
     fn colours_of_a_gif_do_not_depend_on_the_picture() {
         let palette = palette(ColourMap::Viridis);
-        assert_eq!(palette.len(), SHADES.map(usize::from).iter().sum());
+        assert_eq!(palette.len(), SHADES.map(usize::from).iter().sum::<usize>());
         assert!(palette.len() <= 256 && palette.contains(&PAPER) && palette.contains(&INK));
         let mut known = HashMap::new();
         for i in 0..=1000 {
