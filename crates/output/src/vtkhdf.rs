@@ -9,9 +9,9 @@ use crate::{Frame, FrameOptions, OutputError};
 /// Whether this program can write VTKHDF files: it was built with the feature `vtkhdf`.
 pub const HAS_VTKHDF: bool = cfg!(feature = "vtkhdf");
 
-/// Writes one frame as a VTKHDF unstructured grid with one time step, atomically.
+/// Writes one frame as a VTKHDF unstructured grid, atomically.
 ///
-/// Points, cells, fields and their components are those of [`write_vtu`](crate::write_vtu), with the
+/// The field data `TimeValue` (s) and `Step` carry the instant. Points, cells, fields and their components are those of [`write_vtu`](crate::write_vtu), with the
 /// same bits.
 ///
 /// # Errors
@@ -108,30 +108,16 @@ mod file {
         }
         grid.add_group(data.finish());
 
-        // One step, so that a reader knows its time; all arrays begin at 0.
-        let mut steps = grid.create_group("Steps");
-        steps.set_attr("NSteps", AttrValue::I64(1));
-        steps.create_dataset("Values").with_f64_data(&[frame.time]);
-        steps.create_dataset("NumberOfParts").with_i64_data(&[1]);
-        for name in [
-            "PartOffsets",
-            "PointOffsets",
-            "CellOffsets",
-            "ConnectivityIdOffsets",
-        ] {
-            steps.create_dataset(name).with_i64_data(&[0]);
-        }
-        let mut offsets = steps.create_group("PointDataOffsets");
-        let scalars = frame.scalars.iter().map(|(name, _)| name);
-        let vectors = frame.vectors.iter().map(|(name, _)| name);
-        let tensors = frame.tensors.iter().map(|(name, _)| name);
-        for name in scalars.chain(vectors).chain(tensors) {
-            offsets.create_dataset(name).with_i64_data(&[0]);
-        }
-        steps.add_group(offsets.finish());
-        grid.add_group(steps.finish());
+        // VTK reads no time from steps unless there are two.
+        let mut instant = grid.create_group("FieldData");
+        instant
+            .create_dataset("TimeValue")
+            .with_f64_data(&[frame.time]);
+        instant
+            .create_dataset("Step")
+            .with_i64_data(&[frame.step as i64]);
+        grid.add_group(instant.finish());
         file.add_group(grid.finish());
-        file.set_attr("Step", AttrValue::U64(frame.step));
         file
     }
 
@@ -203,7 +189,10 @@ mod file {
                 assert_eq!(numbers("PointData/jacobian").read_f64().unwrap()[3], -0.4);
                 assert_eq!(numbers("Offsets").read_i64().unwrap(), [0, 4]);
                 assert_eq!(numbers("Connectivity").read_i64().unwrap(), [0, 1, 2, 3]);
-                assert_eq!(numbers("Steps/Values").read_f64().unwrap(), [0.1 + 0.2]);
+                assert_eq!(
+                    numbers("FieldData/TimeValue").read_f64().unwrap(),
+                    [0.1 + 0.2]
+                );
             }
         }
     }

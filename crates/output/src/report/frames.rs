@@ -298,7 +298,7 @@ mod tests {
         let whole = size(4_000_000);
         assert!(whole.thinned.is_none() && whole.numbers.is_none());
         assert_eq!(whole.plan.frames, 10);
-        for budget in [250_000, 60_000, 9_000] {
+        for budget in [120_000, 60_000, 9_000] {
             let few = size(budget);
             let plan = &few.plan;
             assert!(plan.frames * plan.frame_length + few.fixed() <= budget);
