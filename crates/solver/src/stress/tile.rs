@@ -166,8 +166,8 @@ impl Piola<'_> {
             let factor = Lanes::load(simd, self.volume, pack).over(jacobian);
             let pressure = Lanes::load(simd, self.pressure, pack);
             let mut stress = load_all(simd, &self.response.kirchhoff_stress, pack);
-            for k in 0..3 {
-                stress[k] = stress[k] + pressure;
+            for diagonal in &mut stress[..3] {
+                *diagonal = *diagonal + pressure;
             }
             h.times_symmetric(&stress, factor).store(self.stress, pack);
         }

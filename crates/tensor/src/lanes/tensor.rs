@@ -153,16 +153,16 @@ impl<S: Simd> LaneTensor<S> for PlaneLanes<S> {
     #[inline(always)]
     fn load(simd: S, tile: &TensorTile, pack: usize) -> Self {
         let mut lanes = [Lanes::splat(simd, 0.0); 5];
-        for k in 0..5 {
-            lanes[k] = Lanes::load(simd, &tile.0[PLANE[k]], pack);
+        for (k, place) in PLANE.into_iter().enumerate() {
+            lanes[k] = Lanes::load(simd, &tile.0[place], pack);
         }
         Self(lanes)
     }
 
     #[inline(always)]
     fn store(&self, tile: &mut TensorTile, pack: usize) {
-        for k in 0..5 {
-            self.0[k].store(&mut tile.0[PLANE[k]], pack);
+        for (k, place) in PLANE.into_iter().enumerate() {
+            self.0[k].store(&mut tile.0[place], pack);
         }
     }
 

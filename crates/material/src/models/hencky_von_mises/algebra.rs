@@ -17,9 +17,9 @@ const fn components(plane: bool) -> usize {
 #[inline(always)]
 pub(super) fn load<S: Simd, const PLANE: bool>(simd: S, tile: &TensorTile, pack: usize) -> Full<S> {
     let mut tensor = [Lanes::splat(simd, 0.0); 9];
-    for k in 0..9 {
+    for (k, component) in tensor.iter_mut().enumerate() {
         if !PLANE || [0, 1, 3, 4, 8].contains(&k) {
-            tensor[k] = Lanes::load(simd, &tile.0[k], pack);
+            *component = Lanes::load(simd, &tile.0[k], pack);
         }
     }
     tensor

@@ -141,8 +141,8 @@ impl TrialStress<'_> {
             let scale = (b[0] + b[1] + b[2]).over(Lanes::splat(simd, 3.0)).inverse();
             let one = Lanes::splat(simd, 1.0);
             let mut a = scaled::<S, PLANE>(&b, scale);
-            for k in 0..3 {
-                a[k] = a[k] - one;
+            for diagonal in &mut a[..3] {
+                *diagonal = *diagonal - one;
             }
             let j2 = norm_squared::<S, PLANE>(&a) * 0.5;
             let distortion = j2 * 2.0;
