@@ -196,7 +196,7 @@ fn leapfrog_takes_the_dissipation_half_a_step_late() {
 }
 
 /// The return map is backward Euler: first order in the plastic strain increments, hence in
-/// everything that follows from them; measured 0.9 to 1.8, falling to 1. Methods of higher order gain
+/// everything that follows from them; measured 0.8 to 1.8, falling to 1. Methods of higher order gain
 /// nothing here.
 #[test]
 fn plastic_flow_is_first_order() {
