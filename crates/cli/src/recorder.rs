@@ -25,9 +25,12 @@ pub(crate) struct Recorder<'a> {
     last: LastRow,
     /// The resolved case, with the names of the copies of the files that it reads.
     resolved: String,
-    /// The state at the last row, which is known to be finite.
+    /// The state at one of the last rows, which is known to be finite.
     good: Saved,
 }
+
+/// Fewest steps from one state that is kept to the next: a copy takes as long as one or two steps.
+const STEPS_BETWEEN_SAVES: u64 = 50;
 
 /// When what is due next.
 struct Next {
@@ -212,7 +215,9 @@ impl<'a> Recorder<'a> {
             };
             if row {
                 self.row(simulation, &fields)?;
-                self.good = simulation.save();
+                if simulation.step_count() >= self.good.step + STEPS_BETWEEN_SAVES {
+                    self.good = simulation.save();
+                }
             }
             if frame {
                 self.frame(simulation, fields)?;
