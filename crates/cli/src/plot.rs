@@ -11,6 +11,8 @@ pub(crate) mod history;
 pub(crate) mod lines;
 mod probes;
 mod setup;
+#[cfg(test)]
+mod testing;
 
 use std::path::{Path, PathBuf};
 

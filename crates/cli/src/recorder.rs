@@ -185,7 +185,7 @@ impl<'a> Recorder<'a> {
             case,
             folder,
             history,
-            writer: Writer::start(frames, cells, folder.restart())?,
+            writer: Writer::start(frames, cells, folder.frames())?,
             next: Next {
                 history: Due::after(time, case.output.history_interval),
                 frame: Due::after(time, case.output.frame_interval),
@@ -267,15 +267,14 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// Writes a state and waits until it is there: whoever is killed later loses what came after it.
+    /// Writes a state, after the rows and frames before it.
     fn restart(&mut self, saved: Saved) -> Result<PathBuf, OutputError> {
         // Rows that a power failure takes must not be missing before a state that it leaves.
         self.history.sync()?;
+        self.writer.wait()?;
         let step = saved.step;
         let data = encode(saved, &self.resolved, &self.last);
-        self.writer.restart(step, data)?;
-        let path = self.writer.wait()?;
-        Ok(path.unwrap_or_else(|| self.folder.restart()))
+        write_restart(&self.folder.restart(), step, &data)
     }
 
     fn row(&mut self, simulation: &Simulation, fields: &ParticleFields) -> Result<(), OutputError> {

@@ -1,60 +1,47 @@
-//! Frames and restart files are written by a thread of their own while the run goes on.
+//! Frames are written by a thread of their own while the run goes on.
 
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, SyncSender, channel, sync_channel};
 use std::thread::JoinHandle;
 
-use jstsph_output::{Frame, FrameSeries, OutputError, RestartData, write_restart};
+use jstsph_output::{Frame, FrameSeries, OutputError};
 
 use crate::recorder::OwnedCells;
 
-/// One file to write.
-enum Job {
-    Frame(Box<Frame<'static>>),
-    Restart { step: u64, data: Box<RestartData> },
-}
-
-/// Writes what it is given in that order, one at a time: a restart file finds the frames before it
-/// written. A file is only accepted when none waits, so that no more than two are held in memory.
+/// Writes the frames it is given in that order, one at a time. A frame is only accepted when none
+/// waits, so that no more than two are held in memory.
 ///
-/// An error reaches whoever gives it the next file, or waits for the last; nothing is written after it.
+/// An error reaches whoever gives it the next frame, or waits for the last; nothing is written after it.
 pub(crate) struct Writer {
     /// Where it writes, for its messages.
     folder: PathBuf,
-    jobs: Option<SyncSender<Job>>,
-    done: Receiver<Outcome>,
+    frames: Option<SyncSender<Box<Frame<'static>>>>,
+    done: Receiver<Result<PathBuf, OutputError>>,
     handle: Option<JoinHandle<()>>,
-    /// Files given whose outcome has not been received.
+    /// Frames given whose outcome has not been received.
     open: usize,
     last_frame: Option<f64>,
 }
 
-/// The path of a restart file.
-type Outcome = Result<Option<PathBuf>, OutputError>;
-
 impl Writer {
-    /// Starts the thread for a series of frames of these cells and restart files into the folder.
+    /// Starts the thread for a series of frames of these cells in a folder.
     ///
     /// # Errors
     /// The system has no thread to give.
     pub(crate) fn start(
-        mut frames: FrameSeries,
+        mut series: FrameSeries,
         cells: OwnedCells,
         folder: PathBuf,
     ) -> Result<Self, OutputError> {
-        let last_frame = frames.last_time();
-        // No buffer: giving a file waits until the thread takes it.
-        let (jobs, queue) = sync_channel::<Job>(0);
+        let last_frame = series.last_time();
+        // No buffer: giving a frame waits until the thread takes it.
+        let (frames, queue) = sync_channel::<Box<Frame<'static>>>(0);
         let (report, done) = channel();
-        let restart = folder.clone();
-        let write = move |job| match job {
-            Job::Frame(frame) => frames.write(&frame.lattice(cells.borrowed())).map(|_| None),
-            Job::Restart { step, data } => write_restart(&restart, step, &data).map(Some),
-        };
         let handle = std::thread::Builder::new()
             .name("writer".to_owned())
             .spawn(move || {
-                for outcome in queue.into_iter().map(write) {
+                for frame in queue {
+                    let outcome = series.write(&frame.lattice(cells.borrowed()));
                     let failed = outcome.is_err();
                     if report.send(outcome).is_err() || failed {
                         return;
@@ -68,7 +55,7 @@ impl Writer {
             })?;
         Ok(Self {
             folder,
-            jobs: Some(jobs),
+            frames: Some(frames),
             done,
             handle: Some(handle),
             open: 0,
@@ -84,54 +71,35 @@ impl Writer {
     /// Has a frame, without its cells, written.
     ///
     /// # Errors
-    /// Of this frame, if it is not finite; of an earlier file.
+    /// Of this frame, if it is not finite; of an earlier one.
     pub(crate) fn frame(&mut self, frame: Frame<'static>) -> Result<(), OutputError> {
         frame.check()?;
         self.last_frame = Some(frame.time);
-        self.give(Job::Frame(Box::new(frame)))
-    }
-
-    /// Has the state after `step` written.
-    ///
-    /// # Errors
-    /// Of an earlier file.
-    pub(crate) fn restart(&mut self, step: u64, data: RestartData) -> Result<(), OutputError> {
-        let data = Box::new(data);
-        self.give(Job::Restart { step, data })
-    }
-
-    /// Waits until everything is written; the last restart file of those it waited for.
-    ///
-    /// # Errors
-    /// The first error there was.
-    pub(crate) fn wait(&mut self) -> Outcome {
-        let mut last = None;
-        while self.open > 0 {
-            last = self.receive()?.or(last);
-        }
-        Ok(last)
-    }
-
-    fn give(&mut self, job: Job) -> Result<(), OutputError> {
         while let Ok(outcome) = self.done.try_recv() {
             self.open -= 1;
             outcome?;
         }
-        let jobs = self.jobs.as_ref();
-        let taken = jobs.is_some_and(|jobs| jobs.send(job).is_ok());
-        if taken {
+        let frames = self.frames.as_ref();
+        if frames.is_some_and(|frames| frames.send(Box::new(frame)).is_ok()) {
             self.open += 1;
             return Ok(());
         }
-        // The thread has ended, with an error that may have come while this file waited.
+        // The thread has ended, with an error that may have come while this frame waited.
         self.wait()?;
         Err(self.lost())
     }
 
-    fn receive(&mut self) -> Outcome {
-        let outcome = self.done.recv().map_err(|_| self.lost())?;
-        self.open -= 1;
-        outcome
+    /// Waits until everything is written.
+    ///
+    /// # Errors
+    /// The first error there was.
+    pub(crate) fn wait(&mut self) -> Result<(), OutputError> {
+        while self.open > 0 {
+            let outcome = self.done.recv().map_err(|_| self.lost())?;
+            self.open -= 1;
+            outcome?;
+        }
+        Ok(())
     }
 
     fn lost(&self) -> OutputError {
@@ -146,7 +114,7 @@ impl Writer {
 impl Drop for Writer {
     /// Lets the thread finish what it was given.
     fn drop(&mut self) {
-        self.jobs = None;
+        self.frames = None;
         if let Some(handle) = self.handle.take() {
             // A panic of the thread has been printed and shows as a lost thread above.
             let _ = handle.join();
@@ -169,25 +137,15 @@ mod tests {
         Frame::new(time, 0, vec![Vec3::x() * time; 1000])
     }
 
-    fn state() -> RestartData {
-        RestartData {
-            header: serde_json::json!({}),
-            arrays: Vec::new(),
-        }
-    }
-
     #[test]
-    fn files_are_written_in_the_order_they_are_given() {
+    fn frames_are_written_in_the_order_they_are_given() {
         let folder = tempfile::tempdir().unwrap();
         let mut writer = writer(folder.path());
         for step in 0..5 {
             writer.frame(frame(f64::from(step))).unwrap();
         }
-        writer.restart(7, state()).unwrap();
-        let path = writer.wait().unwrap().unwrap();
-        assert!(path.ends_with("state-000000000007.jstsph") && path.exists());
+        writer.wait().unwrap();
         assert_eq!(writer.last_frame(), Some(4.0));
-        assert_eq!(writer.wait().unwrap(), None, "nothing is left to wait for");
         let collection =
             jstsph_output::Collection::read(&folder.path().join("frames.pvd")).unwrap();
         let times: Vec<f64> = collection.entries().iter().map(|(time, _)| *time).collect();

@@ -1,7 +1,7 @@
 //! The scalar equation of radial return, `[eq:return]`, with rate `[eq:return-rate]`.
 
 use crate::MaterialError;
-use crate::hardening::{FlowState, FlowStress};
+use crate::hardening::{FlowState, FlowStress, Hardening};
 
 mod tile;
 
@@ -111,6 +111,41 @@ impl RadialReturn {
             iterations: MAX_ITERATIONS,
         })
     }
+
+    /// The increment of a law, the equivalent stress that it leaves, and its work per volume. Without strength
+    /// nothing of the stress is left.
+    #[inline]
+    pub(crate) fn flow(
+        &self,
+        hardening: &Hardening,
+        start: FlowStress,
+    ) -> Result<PlasticFlow, MaterialError> {
+        let increment = self.plastic_increment(start, |at| {
+            hardening.flow_stress_near(&start, self.plastic_strain, at)
+        })?;
+        let (stress, work) = if start.value > 0.0 {
+            let stress = self.trial_stress - Self::stiffness(self.shear_modulus) * increment;
+            (stress, stress * increment)
+        } else {
+            (0.0, 0.5 * self.trial_stress * increment)
+        };
+        Ok(PlasticFlow {
+            increment,
+            stress,
+            work,
+        })
+    }
+}
+
+/// What radial return makes of one point.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlasticFlow {
+    /// Δε_p.
+    pub(crate) increment: f64,
+    /// τ_eq, Pa.
+    pub(crate) stress: f64,
+    /// Plastic work, J per m³ of reference volume.
+    pub(crate) work: f64,
 }
 
 #[cfg(test)]

@@ -144,6 +144,11 @@ impl Shares {
 }
 
 impl Reference {
+    /// Whether nothing happens out of the plane.
+    pub(crate) fn is_plane(&self) -> bool {
+        self.dimension == Dimension::PlaneStrain
+    }
+
     /// Builds the operators of every body.
     ///
     /// # Errors

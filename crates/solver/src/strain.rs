@@ -1,7 +1,6 @@
 //! Strain measures: velocity gradient (3.11a) and the evolution of F, H and J (3.14):
 //! `[eq:strain]`, `[eq:cofactor]`, `[eq:jacobian]`; with bonds `[eq:bond-volume]`.
 
-use jstsph_geometry::Dimension;
 use jstsph_tensor::{Mat3, cofactor, double_dot, tensor_cross};
 
 use crate::model::{Formulation, Quadrature};
@@ -56,7 +55,7 @@ pub(crate) fn drift(
         ..
     } = work;
     let bonds = strains.quadrature == Quadrature::Bonds;
-    let plane = reference.dimension == Dimension::PlaneStrain;
+    let plane = reference.is_plane();
     let step = drift::Drift { bonds, plane, dt };
     parallel::for_each_chunk(
         &mut state.deformation_gradient,

@@ -3,7 +3,6 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use jstsph_geometry::Dimension;
 use jstsph_material::{
     Block, BlockReader, BlockVisitor, History, Kinematics, Material, MaterialBlock, MaterialError,
 };
@@ -264,7 +263,7 @@ fn points_of<'a>(
 ) -> Points<'a> {
     Points {
         strains,
-        plane: reference.dimension == Dimension::PlaneStrain,
+        plane: reference.is_plane(),
         body,
         jacobian: &state.jacobian[body.particles.clone()],
         temperature: &state.temperature[body.particles.clone()],

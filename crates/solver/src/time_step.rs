@@ -2,7 +2,6 @@
 
 use std::ops::Range;
 
-use jstsph_geometry::Dimension;
 use jstsph_tensor::{Mat3, double_dot, largest_eigenvalue};
 
 use crate::parallel;
@@ -99,7 +98,7 @@ pub(crate) fn stable_step(reference: &Reference, state: &State) -> StableStep {
         point: 0,
         stretch: 1.0,
     };
-    let plane = reference.dimension == Dimension::PlaneStrain;
+    let plane = reference.is_plane();
     for body in &reference.bodies {
         let start = body.points.start;
         let gradients = &state.deformation_gradient[body.points.clone()];

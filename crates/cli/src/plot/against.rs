@@ -116,18 +116,8 @@ pub(super) fn summaries(folders: &[std::path::PathBuf]) -> Result<Vec<Summary>, 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plot::testing::block;
     use jstsph_output::{Status, Table};
-
-    const CASE: &str = r#"
-dimension = "plane-strain"
-[time]
-end = 1e-3
-[[body]]
-name = "block"
-shape = { box = { min = [0, 0], max = [0.004, 0.006] } }
-lattice = { counts = [5, 7] }
-material = "copper_taylor"
-"#;
 
     fn summary(particles: u64) -> Summary {
         let mut summary = Summary::new("a", Status::Completed);
@@ -137,7 +127,7 @@ material = "copper_taylor"
 
     #[test]
     fn runs_of_one_label_become_a_curve_over_a_number_of_the_summary() {
-        let case = jstsph_case::parse("b", "b.toml", CASE, &[]).expect("a case");
+        let case = block("");
         let table = |value: f64| Table {
             columns: ["time", "plastic_energy"].map(str::to_owned).to_vec(),
             rows: vec![vec![0.0, 0.0], vec![0.5e-3, value], vec![1e-3, 2.0 * value]],

@@ -176,16 +176,9 @@ fn set_scales(plot: &mut LinePlot, log: Option<LogAxes>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plot::testing::block;
 
-    const CASE: &str = r#"
-dimension = "plane-strain"
-[time]
-end = 1e-3
-[[body]]
-name = "block"
-shape = { box = { min = [0, 0], max = [0.004, 0.006] } }
-lattice = { counts = [5, 7] }
-material = "copper_taylor"
+    const TABLES: &str = r#"
 [[probe]]
 name = "height"
 extent = { where = "block", axis = "y" }
@@ -221,7 +214,7 @@ line = { from = [0, 0], to = [0.004, 0], count = 2, field = "pressure" }
     }
 
     fn plots(what: &str, look: &CurveLook, labels: &[&str]) -> Result<Vec<LinePlot>, CliError> {
-        let case = jstsph_case::parse("b", "b.toml", CASE, &[]).expect("a case");
+        let case = block(TABLES);
         let names: Vec<&str> = what.split(',').collect();
         let of = |run: usize| derived::derived(&table(run as f64 + 1.0), &names, look.smooth);
         let tables: Vec<Table> = (0..labels.len()).map(of).collect();

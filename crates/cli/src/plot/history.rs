@@ -273,16 +273,9 @@ fn measured(unit: &str) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plot::testing::block;
 
-    const CASE: &str = r#"
-dimension = "plane-strain"
-[time]
-end = 1e-3
-[[body]]
-name = "block"
-shape = { box = { min = [0, 0], max = [0.004, 0.006] } }
-lattice = { counts = [5, 7] }
-material = "copper_taylor"
+    const TABLES: &str = r#"
 [[probe]]
 name = "length"
 extent = { where = "block", axis = "y" }
@@ -295,7 +288,7 @@ line = { from = [0, 0.003], to = [0.004, 0.003], count = 3, field = "pressure" }
 "#;
 
     fn case() -> Case {
-        jstsph_case::parse("b", "b.toml", CASE, &[]).expect("a case")
+        block(TABLES)
     }
 
     /// Three rows in which column `i` grows from `i`; the profile has no value in the last.

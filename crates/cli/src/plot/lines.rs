@@ -201,16 +201,9 @@ fn circle(centre: &Vec3, radius: f64, right: usize, up: usize) -> Vec<Vec3> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plot::testing::block;
 
-    const TEXT: &str = r#"
-dimension = "plane-strain"
-[time]
-end = 1e-3
-[[body]]
-name = "block"
-shape = { box = { min = [0, 0], max = [0.004, 0.006] } }
-lattice = { counts = [5, 7] }
-material = "copper_taylor"
+    const TABLES: &str = r#"
 [[obstacle]]
 name = "wall"
 plane = { point = [0, 0], normal = [0, 1] }
@@ -226,7 +219,7 @@ plane = { point = [0, 0.006], normal = [0, -1] }
     };
 
     fn case() -> Case {
-        jstsph_case::parse("b", "b.toml", TEXT, &[]).expect("a case")
+        block(TABLES)
     }
 
     #[test]

@@ -9,7 +9,7 @@ use crate::material::checked_determinant;
 use crate::parameter::{
     DENSITY, POISSON_RATIO_IN_TEMPERATURE, Range, YOUNG_MODULUS_IN_TEMPERATURE,
 };
-use crate::return_map::RadialReturn;
+use crate::return_map::{PlasticFlow, RadialReturn};
 use crate::thermal::THERMAL;
 use crate::{
     Damage, EquationOfState, History, JohnsonCookDamage, Key, Kinematics, KinematicsTile, Material,
@@ -277,7 +277,11 @@ impl Material for HenckyVonMises {
             });
         }
 
-        let increment = RadialReturn {
+        let PlasticFlow {
+            increment,
+            stress: equivalent_stress,
+            work: plastic_work,
+        } = RadialReturn {
             trial_stress: trial_equivalent_stress,
             shear_modulus: mu,
             jacobian: now.jacobian,
@@ -285,16 +289,7 @@ impl Material for HenckyVonMises {
             dt: now.dt,
             temperature: now.temperature,
         }
-        .plastic_increment(flow_stress, |at| {
-            self.hardening
-                .flow_stress_near(&flow_stress, old.equivalent_plastic_strain, at)
-        })?;
-        let (equivalent_stress, plastic_work) = if flow_stress.value > 0.0 {
-            let stress = trial_equivalent_stress - 3.0 * mu * increment;
-            (stress, stress * increment)
-        } else {
-            (0.0, 0.5 * trial_equivalent_stress * increment)
-        };
+        .flow(&self.hardening, flow_stress)?;
 
         let damage = match &self.damage {
             None => old.damage,

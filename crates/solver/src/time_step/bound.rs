@@ -18,25 +18,12 @@ use super::inverse_cauchy_green;
 /// With `plane`, nothing is out of the plane but the components 33.
 pub(super) fn evaluate(plane: bool, gradients: &[Mat3], cofactors: &[Mat3], bounds: &mut [f64]) {
     let tiled = gradients.len() - gradients.len() % TILE;
-    let (mut f, mut h) = (TensorTile::ZERO, TensorTile::ZERO);
-    for start in (0..tiled).step_by(TILE) {
-        let range = start..start + TILE;
-        if plane {
-            f.read_plane(&gradients[range.clone()]);
-            h.read_plane(&cofactors[range.clone()]);
-        } else {
-            f.read(&gradients[range.clone()]);
-            h.read(&cofactors[range.clone()]);
-        }
-        let mut tile = [0.0; TILE];
-        vectorised(Tile {
-            plane,
-            gradient: &f,
-            cofactor: &h,
-            bound: &mut tile,
-        });
-        bounds[range].copy_from_slice(&tile);
-    }
+    vectorised(Tiles {
+        plane,
+        gradients: &gradients[..tiled],
+        cofactors: &cofactors[..tiled],
+        bounds: &mut bounds[..tiled],
+    });
     for q in tiled..gradients.len() {
         let a = inverse_cauchy_green(&gradients[q], &cofactors[q]);
         let mean = jstsph_tensor::mean_trace(&a);
@@ -45,14 +32,15 @@ pub(super) fn evaluate(plane: bool, gradients: &[Mat3], cofactors: &[Mat3], boun
     }
 }
 
-struct Tile<'a> {
+/// Whole tiles of points.
+struct Tiles<'a> {
     plane: bool,
-    gradient: &'a TensorTile,
-    cofactor: &'a TensorTile,
-    bound: &'a mut [f64; TILE],
+    gradients: &'a [Mat3],
+    cofactors: &'a [Mat3],
+    bounds: &'a mut [f64],
 }
 
-impl WithSimd for Tile<'_> {
+impl WithSimd for Tiles<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -65,20 +53,28 @@ impl WithSimd for Tile<'_> {
     }
 }
 
-impl Tile<'_> {
+impl Tiles<'_> {
     #[inline(always)]
     fn evaluate<S: Simd, T: LaneTensor<S>>(self, simd: S) {
-        for pack in 0..TILE / S::F64_LANES {
-            let h = T::load(simd, self.cofactor, pack);
-            let f = T::load(simd, self.gradient, pack);
-            let determinant = h.double_dot(&f) * (1.0 / 3.0);
-            let scale = (determinant * determinant).inverse();
-            let [a11, a22, a33, a12, a13, a23] = times(&h.gram(), scale);
-            let mean = (a11 + a22 + a33) * (1.0 / 3.0);
-            let (d1, d2, d3) = (a11 - mean, a22 - mean, a33 - mean);
-            let off: Lanes<S> = a12 * a12 + a13 * a13 + a23 * a23;
-            let deviator = d1 * d1 + d2 * d2 + d3 * d3 + off * 2.0;
-            (mean + (deviator * (2.0 / 3.0)).sqrt()).store(self.bound, pack);
+        let (mut gradient, mut cofactor) = (TensorTile::ZERO, TensorTile::ZERO);
+        let mut bound = [0.0; TILE];
+        for start in (0..self.gradients.len()).step_by(TILE) {
+            let range = start..start + TILE;
+            T::read(&mut gradient, &self.gradients[range.clone()]);
+            T::read(&mut cofactor, &self.cofactors[range.clone()]);
+            for pack in 0..TILE / S::F64_LANES {
+                let h = T::load(simd, &cofactor, pack);
+                let f = T::load(simd, &gradient, pack);
+                let determinant = h.double_dot(&f) * (1.0 / 3.0);
+                let scale = (determinant * determinant).inverse();
+                let [a11, a22, a33, a12, a13, a23] = times(&h.gram(), scale);
+                let mean = (a11 + a22 + a33) * (1.0 / 3.0);
+                let (d1, d2, d3) = (a11 - mean, a22 - mean, a33 - mean);
+                let off: Lanes<S> = a12 * a12 + a13 * a13 + a23 * a23;
+                let deviator = d1 * d1 + d2 * d2 + d3 * d3 + off * 2.0;
+                (mean + (deviator * (2.0 / 3.0)).sqrt()).store(&mut bound, pack);
+            }
+            self.bounds[range].copy_from_slice(&bound);
         }
     }
 }

@@ -95,7 +95,7 @@ impl Flow {
         if trial_stress <= jacobian * start.value {
             return Some(());
         }
-        let increment = RadialReturn {
+        let flow = RadialReturn {
             trial_stress,
             shear_modulus: problem.shear_modulus,
             jacobian,
@@ -103,20 +103,12 @@ impl Flow {
             dt: now.dt,
             temperature,
         }
-        .plastic_increment(start, |at| {
-            model.hardening.flow_stress_near(&start, plastic_strain, at)
-        })
+        .flow(&model.hardening, start)
         .ok()?;
-        let (stress, work) = if start.value > 0.0 {
-            let stress = trial_stress - RadialReturn::stiffness(problem.shear_modulus) * increment;
-            (stress, stress * increment)
-        } else {
-            (0.0, 0.5 * trial_stress * increment)
-        };
-        self.increment[i] = increment;
-        self.plastic_work[i] = work;
-        self.direction[i] = -3.0 * increment / trial_stress;
-        self.ratio[i] = stress / trial_stress;
+        self.increment[i] = flow.increment;
+        self.plastic_work[i] = flow.work;
+        self.direction[i] = -3.0 * flow.increment / trial_stress;
+        self.ratio[i] = flow.stress / trial_stress;
         Some(())
     }
 }
