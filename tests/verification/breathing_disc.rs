@@ -115,6 +115,28 @@ fn problem_on(body: Body, scheme: Scheme) -> StandingWave {
     }
 }
 
+/// The quarter of the disc with x and y above zero, as the common part of two shapes, on rollers.
+fn quarter(per_radius: usize, scheme: Scheme) -> StandingWave {
+    let disc = Shape::Disc {
+        centre: Vec3::zeros(),
+        radius: 1.0,
+    };
+    let corner = Shape::Box {
+        min: Vec3::zeros(),
+        max: Vec3::new(1.0, 1.0, 0.0),
+    };
+    let spacing = Spacing::Counts([per_radius + 1; 3]);
+    let body = build_body(
+        Shape::Intersection(vec![disc, corner]),
+        Lattice::Cubic { spacing },
+        Dimension::PlaneStrain,
+    );
+    let mut wave = problem_on(body.expect("a valid quarter"), scheme);
+    setup::fix(&mut wave.model, "left", [true, false, false]);
+    setup::fix(&mut wave.model, "bottom", [false, true, false]);
+    wave
+}
+
 fn study(name: &str, scheme: Scheme, lattice: impl Fn(usize) -> Lattice) -> Study {
     let study = Study::over(
         format!("breathing disc, {name}"),
@@ -224,5 +246,29 @@ fn cylinders_between_plates_breathe_as_discs() {
         study.show();
         study.assert_order("velocity", 1.7..3.0);
         study.assert_order("stress", 1.3..2.5);
+    }
+}
+
+/// A body carved out of its lattice, whose surface is sampled.
+#[test]
+fn carved_quarters_are_second_order_in_velocity() {
+    for (name, scheme) in [
+        ("particles, h = 0.9", setup::particles(0.9)),
+        ("bonds, h = 0.8", setup::bonds(0.8)),
+    ] {
+        let over = |name: String, scheme: Scheme| {
+            let study = Study::over(name, &ERRORS, &[8, 16, 32], |n| {
+                quarter(n, scheme).errors_after(0.625).row()
+            });
+            study.show();
+            study
+        };
+        over(format!("quarter, {name}"), scheme);
+        let study = over(
+            format!("quarter, corrected, {name}"),
+            setup::corrected(scheme),
+        );
+        study.assert_order("velocity", 1.9..2.4);
+        study.assert_order("stress", 1.4..2.2);
     }
 }

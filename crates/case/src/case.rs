@@ -336,7 +336,7 @@ impl Case {
                     self.model.scheme.smoothing_ratio
                 ))
             }),
-            SolverError::NoBonds { body } | SolverError::NoSurface { body } => {
+            SolverError::NoBonds { body } => {
                 place(body).map(|place| Problem::new(&place.lattice, error.to_string()))
             }
             SolverError::Material { body, .. } => {

@@ -2,7 +2,7 @@
 
 use jstsph_tensor::Vec3;
 
-use crate::face::Face;
+use crate::face::{Face, FaceArea};
 use crate::{
     Cells, Dimension, GeometryError, Lattice, Shape, carved, clipped, cuboid, lattice, rings,
 };
@@ -36,6 +36,8 @@ pub struct Body {
     /// ring or an end layer).
     pub boundary: Vec<bool>,
     pub(crate) faces: Vec<Face>,
+    /// The surface where the faces are not all of it: bodies carved out of a lattice.
+    pub(crate) surface: Option<Vec<FaceArea>>,
 }
 
 /// Bonds of a body: pairs of nearest lattice neighbours along the axes, in the order of their

@@ -11,6 +11,7 @@ use crate::body::{Body, Bonds};
 use crate::chords::{chords, contains};
 use crate::exposed;
 use crate::grid::{Grid, between};
+use crate::surface::carved_surface;
 use crate::{Cells, Dimension, GeometryError, Shape};
 
 /// How far outside a lattice point may lie and still be a node, in spacings: above the rounding of
@@ -82,6 +83,7 @@ pub(crate) fn build(
     let is_cell = lattice.full_cells(&grid);
     let boundary = exposed::boundary(&lattice, &grid, &is_cell);
     let faces = exposed::faces(&lattice, &grid, &is_cell, &positions);
+    let surface = Some(carved_surface(&lattice, &grid, &positions));
     Ok(Body {
         dimension,
         volumes: node_volumes,
@@ -90,6 +92,7 @@ pub(crate) fn build(
         bonds: Some(bonds),
         cells,
         boundary,
+        surface,
         faces,
         positions,
         shape,

@@ -65,7 +65,7 @@ pub(crate) fn chords(shape: &Shape, y: f64, z: f64, dimension: Dimension) -> Cho
         Shape::Difference(parts) => {
             let mut parts = parts.iter().map(|part| chords(part, y, z, dimension));
             let first = parts.next().unwrap_or_default();
-            parts.fold(first, |all, part| intersection(&all, &complement(&part)))
+            parts.fold(first, |all, part| without(&all, &part))
         }
     }
 }
@@ -103,6 +103,11 @@ fn intersection(a: &[[f64; 2]], b: &[[f64; 2]]) -> Chords {
         }
     }
     common
+}
+
+/// What is in the first but not in the second.
+pub(crate) fn without(a: &[[f64; 2]], b: &[[f64; 2]]) -> Chords {
+    intersection(a, &complement(b))
 }
 
 fn complement(part: &[[f64; 2]]) -> Chords {

@@ -72,6 +72,7 @@ pub(crate) fn build(shape: Shape, round: &Round, n: usize, layers: usize) -> Bod
         bonds: Some(bonds),
         cells: grid.cells(),
         boundary: grid.boundary(),
+        surface: None,
         faces: Faces {
             section: &section,
             round,

@@ -93,6 +93,7 @@ pub(crate) fn build(shape: Shape, counts: [usize; 3], dimension: Dimension) -> B
         bonds: Some(bonds),
         cells: grid.cells(),
         boundary: grid.boundary(),
+        surface: None,
         faces: faces.collect(),
         positions,
         shape,

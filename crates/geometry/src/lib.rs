@@ -56,6 +56,7 @@ mod rings;
 mod section;
 mod selection;
 mod shape;
+mod surface;
 
 pub use body::{Body, Bonds, build_body};
 pub use cells::{CellDefects, Cells, inverted_cells};
@@ -70,6 +71,7 @@ pub use neighbours::{Csr, neighbours, neighbours_of};
 pub use polygon::Polygon;
 pub use selection::{Selection, select};
 pub use shape::Shape;
+pub use surface::surface_parts;
 
 /// The example of the README, run as a test.
 #[cfg(doctest)]

@@ -100,6 +100,7 @@ pub(crate) fn build(
         volumes,
         weights,
         boundary,
+        surface: None,
         shape,
     }
 }

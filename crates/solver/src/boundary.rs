@@ -1,8 +1,8 @@
 //! The boundary as the gradient operator should see it: docs/theory.md, "Summation by parts near the
 //! boundary".
 
-use jstsph_geometry::{Body, Shape, face_areas};
-use jstsph_sph::{Correction, GradientOperator, SphError, Support};
+use jstsph_geometry::{Body, surface_parts};
+use jstsph_sph::{Correction, GradientOperator, Support};
 use jstsph_tensor::Vec3;
 
 /// Largest inner defect, in lattice faces, of an operator that is left as it is: boxes with a narrow
@@ -19,31 +19,13 @@ const EXTRAPOLATION_RATIO: f64 = 0.8;
 /// N_c = Σ_s A_s n_s ψ_c(X_s) over the parts s of the surface, m²: zero away from the boundary.
 ///
 /// ψ_c(X_s) = δ_ac + B_ac · (X_s − X_a) extrapolates linearly from the node a of the part to the point
-/// of the true surface, which is the node itself except on the staircase of a round body. Hence Σ N
+/// of the true surface, which is the node itself except on the staircase of a round or carved body. Hence Σ N
 /// and Σ X ⊗ N are those of the surface, zero and V 1.
 ///
-/// `None` for bodies carved out of a lattice: their staircase does not have the moments of the surface.
-///
-/// # Errors
-/// [`SphError`] where a node of a staircase lacks neighbours.
-pub(crate) fn area_vectors(
-    body: &Body,
-    weights: &[f64],
-    support: &Support,
-) -> Result<Option<Vec<Vec3>>, SphError> {
-    if !matches!(
-        body.shape,
-        Shape::Box { .. } | Shape::Disc { .. } | Shape::Cylinder { .. }
-    ) {
-        return Ok(None);
-    }
-    let parts: Vec<_> = body
-        .shape
-        .faces(body.dimension)
-        .iter()
-        .filter_map(|face| face_areas(body, face).ok())
-        .flatten()
-        .collect();
+/// On bodies carved out of a lattice, whose surface is known as accurately as it was sampled, nearly so. A
+/// body with nodes that have too few neighbours for a gradient is not extrapolated.
+pub(crate) fn area_vectors(body: &Body, weights: &[f64], support: &Support) -> Vec<Vec3> {
+    let parts = surface_parts(body);
     let arm = |node: usize, point: &Vec3| point - body.positions[node];
     let far = 1e-9 * body.spacing;
     let extrapolates = parts
@@ -56,8 +38,8 @@ pub(crate) fn area_vectors(
         ..*support
     };
     let nodal = extrapolates
-        .then(|| GradientOperator::at_particles(&body.positions, weights, &support))
-        .transpose()?;
+        .then(|| GradientOperator::at_particles(&body.positions, weights, &support).ok())
+        .flatten();
     let mut vectors = vec![Vec3::zeros(); body.positions.len()];
     for part in &parts {
         let a = part.node as usize;
@@ -73,7 +55,7 @@ pub(crate) fn area_vectors(
             }
         }
     }
-    Ok(Some(vectors))
+    vectors
 }
 
 /// The operator made to sum by parts, and how, when it does not do so by itself.

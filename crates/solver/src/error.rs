@@ -31,14 +31,6 @@ pub enum SolverError {
         /// Body.
         body: String,
     },
-    /// The boundary correction needs the areas of the true surface.
-    #[error(
-        "body `{body}` is neither a box, a disc nor a cylinder, whose surface the boundary correction needs; leave boundary_correction at false"
-    )]
-    NoSurface {
-        /// Body.
-        body: String,
-    },
     /// The model is inconsistent in itself.
     #[error("{what}")]
     Inconsistent {

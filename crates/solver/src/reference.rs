@@ -205,13 +205,7 @@ impl Reference {
                 (gradient, bonds.ends.clone(), shares)
             }
         };
-        let surface = boundary::area_vectors(body, weights, &support).map_err(failed)?;
-        if scheme.boundary_correction && surface.is_none() {
-            return Err(SolverError::NoSurface {
-                body: input.name.clone(),
-            });
-        }
-        let area_vectors = surface.unwrap_or_else(|| vec![Vec3::zeros(); particles]);
+        let area_vectors = boundary::area_vectors(body, weights, &support);
         let (gradient, correction) = if scheme.boundary_correction {
             boundary::corrected(
                 gradient,

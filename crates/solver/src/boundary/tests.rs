@@ -1,4 +1,4 @@
-use jstsph_geometry::{Axis, Dimension, Lattice, Spacing, build_body};
+use jstsph_geometry::{Axis, Dimension, Lattice, Shape, Spacing, build_body};
 use jstsph_sph::Kernel;
 use jstsph_tensor::Mat3;
 
@@ -44,6 +44,39 @@ fn rings(layers: usize) -> Lattice {
     }
 }
 
+/// A half disc with a hole, and a ball: no face of their own on the lattice but the flat one.
+fn carved() -> Vec<(&'static str, Body)> {
+    let disc = |x: f64, y: f64, radius| Shape::Disc {
+        centre: Vec3::new(x, y, 0.0),
+        radius,
+    };
+    let half = Shape::Difference(vec![
+        Shape::Intersection(vec![
+            disc(0.0, 0.0, 1.0),
+            Shape::Box {
+                min: Vec3::new(0.0, -2.0, 0.0),
+                max: Vec3::new(2.0, 2.0, 0.0),
+            },
+        ]),
+        disc(0.52, 0.0, 0.21),
+    ]);
+    let ball = Shape::Sphere {
+        centre: Vec3::new(0.1, 0.2, 0.3),
+        radius: 1.0,
+    };
+    let build = |shape, length, dimension| {
+        let spacing = Spacing::Length(length);
+        build_body(shape, Lattice::Cubic { spacing }, dimension).unwrap()
+    };
+    vec![
+        (
+            "half disc with a hole",
+            build(half, 0.05, Dimension::PlaneStrain),
+        ),
+        ("ball", build(ball, 0.2, Dimension::Solid)),
+    ]
+}
+
 fn box_body(dimension: Dimension) -> Body {
     let solid = dimension == Dimension::Solid;
     let shape = Shape::Box {
@@ -70,9 +103,7 @@ fn bodies() -> Vec<(&'static str, Body)> {
 #[test]
 fn area_vectors_have_the_moments_of_the_surface() {
     for (name, body) in bodies() {
-        let vectors = area_vectors(&body, &body.weights, &support(&body, 0.9))
-            .unwrap()
-            .unwrap();
+        let vectors = area_vectors(&body, &body.weights, &support(&body, 0.9));
         let volume: f64 = body.volumes.iter().sum();
         let total: Vec3 = vectors.iter().sum();
         assert!(total.norm() < 1e-12 * volume, "{name}: {total}");
@@ -99,9 +130,7 @@ fn round_bodies_sum_by_parts() {
     for (name, body) in bodies() {
         let face = body.spacing.powi(body.dimension.count() as i32 - 1);
         let support = support(&body, 0.9);
-        let vectors = area_vectors(&body, &body.weights, &support)
-            .unwrap()
-            .unwrap();
+        let vectors = area_vectors(&body, &body.weights, &support);
         let mut candidates = vec![(
             GradientOperator::at_particles(&body.positions, &body.weights, &support).unwrap(),
             body.volumes.clone(),
@@ -116,8 +145,30 @@ fn round_bodies_sum_by_parts() {
             assert_eq!(correction.is_none(), is_box, "{name}");
             if !is_box {
                 let defect = largest_defect(&operator, &volumes, &vectors, |_| true) / face;
-                assert!(defect < 1e-7, "{name}: {defect:e}");
+                assert!(defect < 1e-3, "{name}: {defect:e}");
             }
         }
+    }
+}
+
+/// The sampled surface is off by a few 1e-4 of the volume; what the rows cannot meet of that moves the
+/// surface, the rest is met: no inner force from a constant stress, whatever the staircase.
+#[test]
+fn carved_bodies_sum_by_parts() {
+    for (name, body) in carved() {
+        let face = body.spacing.powi(body.dimension.count() as i32 - 1);
+        let support = support(&body, 0.8);
+        let vectors = area_vectors(&body, &body.weights, &support);
+        let bonds = body.bonds.as_ref().unwrap();
+        let operator =
+            GradientOperator::at_points(&bonds.midpoints, &body.positions, &support).unwrap();
+        let inner = |a: usize| !body.boundary[a];
+        assert!((0..vectors.len()).any(inner), "{name}");
+        let before = largest_defect(&operator, &bonds.volumes, &vectors, inner) / face;
+        let (operator, correction) = corrected(operator, &body, &bonds.volumes, &vectors);
+        let inside = largest_defect(&operator, &bonds.volumes, &vectors, inner) / face;
+        let all = largest_defect(&operator, &bonds.volumes, &vectors, |_| true) / face;
+        assert!(correction.is_some() && before > 1e-2, "{name}: {before:e}");
+        assert!(inside < 1e-3 && all < 2e-2, "{name}: {inside:e} {all:e}");
     }
 }

@@ -6,16 +6,11 @@ use jstsph_tensor::{Mat3, Vec3};
 use super::{Entry, GradientOperator};
 use crate::rows::Rows;
 
-/// The conjugate gradients end when they have reduced the defect by this factor.
-const REDUCTION: f64 = 1e-10;
+mod normal;
+mod solvable;
 
-/// Ten times what the largest body of the tests needs.
-const ITERATION_LIMIT: usize = 10_000;
-
-/// Added to the diagonal of the normal equations, over the mean volume. A linear multiplier changes
-/// no row, so the equations are singular; this keeps its size bounded and changes the rest by less
-/// than [`REDUCTION`] asks for.
-const DAMPING: f64 = 1e-9;
+use normal::NormalEquations;
+use solvable::make_solvable;
 
 /// What [`GradientOperator::summing_by_parts`] did.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,12 +89,13 @@ impl GradientOperator {
     ///
     /// [eq:boundary-correction]. The δ of a row is orthogonal to constants and linears, so that both
     /// stay exact and momentum stays conserved; among all such changes it is the one of smallest
-    /// Σ_q V_q Σ_c |δ_qc|². λ solves a symmetric, matrix-free system by conjugate gradients. Variationally
+    /// Σ_q V_q Σ_c |δ_qc|². λ solves a symmetric system by conjugate gradients. Variationally
     /// consistent integration (Chen, Hillman & Rüter 2013) solves the same condition on the test side.
     ///
-    /// Only rows near a particle whose defect exceeds `tolerance` change. What can be met is met: a
-    /// solution exists when Σ_c (N_c − Σ_q V_q B_qc) and its first moments vanish over every
-    /// connected group of these rows, which holds when N has the moments of the body's surface.
+    /// Only rows near a particle whose defect exceeds `tolerance` change. A solution exists when
+    /// Σ_c (N_c − Σ_q V_q B_qc) and its first moments vanish over every connected group of these rows,
+    /// which holds when N has the moments of the body's surface; where it has them only nearly, N
+    /// changes by as much as they are off, in proportion to its size.
     ///
     /// # Arguments
     /// * `positions`: particles, m.
@@ -152,7 +148,9 @@ impl GradientOperator {
                 *value = Vec3::zeros();
             }
         }
-        let (multiplier, iterations) = multiplier(&rows, &defect);
+        let sizes: Vec<f64> = area_vectors.iter().map(Vec3::norm).collect();
+        make_solvable(&mut defect, &sizes, &rows, positions, self.plane);
+        let (multiplier, iterations) = NormalEquations::new(&rows, self.particles()).solve(&defect);
 
         let mut change = 0.0f64;
         let mut changed = rows.iter().peekable();
@@ -181,45 +179,6 @@ impl GradientOperator {
         };
         (operator, correction)
     }
-}
-
-/// λ with Σ_q V_q (λ_c − fit_q λ (X_c)) = `defect`_c, and the number of iterations.
-fn multiplier(rows: &[Row<'_>], defect: &[Vec3]) -> (Vec<Vec3>, usize) {
-    let mean_volume = rows.iter().map(|row| row.volume).sum::<f64>() / rows.len().max(1) as f64;
-    let squared = |field: &[Vec3]| field.iter().map(Vec3::norm_squared).sum::<f64>();
-    let mut solution = vec![Vec3::zeros(); defect.len()];
-    let mut residual = defect.to_vec();
-    let mut direction = residual.clone();
-    let mut image = vec![Vec3::zeros(); defect.len()];
-    let mut scratch = Vec::new();
-    let mut size = squared(&residual);
-    let target = size * REDUCTION * REDUCTION;
-    for iteration in 0..ITERATION_LIMIT {
-        if size <= target {
-            return (solution, iteration);
-        }
-        for (image, direction) in image.iter_mut().zip(&direction) {
-            *image = direction * (DAMPING * mean_volume);
-        }
-        for row in rows {
-            row.residual(&direction, &mut scratch);
-            for (&c, value) in row.particles.iter().zip(&scratch) {
-                image[c as usize] += value * row.volume;
-            }
-        }
-        let curvature: f64 = direction.iter().zip(&image).map(|(d, i)| d.dot(i)).sum();
-        let length = size / curvature;
-        for (c, image) in image.iter().enumerate() {
-            solution[c] += direction[c] * length;
-            residual[c] -= image * length;
-        }
-        let ratio = squared(&residual) / size;
-        size *= ratio;
-        for (direction, residual) in direction.iter_mut().zip(&residual) {
-            *direction = residual + *direction * ratio;
-        }
-    }
-    (solution, ITERATION_LIMIT)
 }
 
 #[cfg(test)]
