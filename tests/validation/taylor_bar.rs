@@ -63,6 +63,29 @@ fn a_quarter_between_planes_of_symmetry_is_the_whole_bar() {
     }
 }
 
+/// Rings fit the edge: radius and length approach those of axisymmetric finite elements (docs/validation.md)
+/// from one side. Measured 6.967, 7.147 mm and 21.412, 21.286 mm for two and three rings; 7.349 and 21.219 mm
+/// for ten.
+#[test]
+fn rings_approach_the_radius_and_the_length_of_finite_elements() {
+    let on_rings = |rings: usize| {
+        let lattice = format!(
+            "{{ rings = {rings}, per_ring = 6, layers = {} }}",
+            10 * rings + 1
+        );
+        run("taylor-bar-rings", &[("body.bar.lattice", &lattice)])
+    };
+    let (coarse, fine) = (on_rings(2), on_rings(3));
+    for (name, limit, sign, largest) in [
+        ("base_radius", 7.36e-3, -1.0, 0.035),
+        ("length", 21.21e-3, 1.0, 0.005),
+    ] {
+        let [far, near] = [&coarse, &fine].map(|run| sign * (run.probe(name) / limit - 1.0));
+        assert_within(name, near, 0.0..=largest);
+        assert_within("ratio of the errors", near / far, 0.0..=0.75);
+    }
+}
+
 #[test]
 fn nothing_is_below_the_wall() {
     let finished = bar(2);

@@ -249,6 +249,32 @@ fn cylinders_between_plates_breathe_as_discs() {
     }
 }
 
+/// Six nodes in the first ring wind a triangular lattice, the best for bonds.
+fn wound(n: usize) -> Lattice {
+    Lattice::Rings {
+        rings: n,
+        per_ring: 6,
+        layers: 1,
+    }
+}
+
+/// Bonds on rings.
+#[test]
+fn rings_with_bonds_are_second_order() {
+    for (name, lattice) in [("8", rings as fn(usize) -> Lattice), ("6", wound)] {
+        let bare = study(
+            &format!("rings of {name}, bonds"),
+            setup::bonds(0.8),
+            lattice,
+        );
+        bare.assert_order("velocity", 1.7..2.2);
+        let name = format!("rings of {name}, corrected, bonds");
+        let study = study(&name, setup::corrected(setup::bonds(0.8)), lattice);
+        study.assert_order("velocity", 1.9..2.2);
+        study.assert_order("stress", 1.5..2.2);
+    }
+}
+
 /// A body carved out of its lattice, whose surface is sampled.
 #[test]
 fn carved_quarters_are_second_order_in_velocity() {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use jstsph_geometry::{Body, Dimension, Lattice, Shape, Spacing, build_body};
 use jstsph_material::ROOM_TEMPERATURE;
-use jstsph_solver::{ModelBody, Quadrature};
+use jstsph_solver::ModelBody;
 use jstsph_tensor::Vec3;
 
 use crate::document::{Node, Value};
@@ -30,7 +30,6 @@ pub(crate) struct BodyPlace {
 /// What the bodies of a case share.
 pub(crate) struct Context<'a> {
     pub(crate) dimension: Dimension,
-    pub(crate) quadrature: Quadrature,
     pub(crate) materials: &'a Materials,
     /// Folder of the case file.
     pub(crate) folder: &'a Path,
@@ -53,7 +52,7 @@ pub(crate) fn read_body(
     let section = &mut table;
 
     let shape = read_shape(section, context.dimension, context.folder)?;
-    let (lattice, lattice_origin) = read_lattice(section, &shape, context)?;
+    let (lattice, lattice_origin) = read_lattice(section, &shape, context.dimension)?;
     let body = build_body(shape, lattice, context.dimension)
         .map_err(|error| Problem::new(&lattice_origin, format!("body `{name}`: {error}")))?;
     let material_field = section.need("material")?;
@@ -111,7 +110,7 @@ pub(crate) fn check_name(section: &Section<'_>, name: &str) -> Result<(), Proble
 fn read_lattice(
     section: &mut Section<'_>,
     shape: &Shape,
-    context: &Context<'_>,
+    dimension: Dimension,
 ) -> Result<(Lattice, Origin), Problem> {
     let field = section.need("lattice")?;
     let mut part = Section::open(&field.node, &field.path, schema::LATTICE)?;
@@ -136,10 +135,10 @@ fn read_lattice(
             spacing: Spacing::Length(part.number("spacing")?),
         },
         "counts" => {
-            let counts = read_counts(&part.need("counts")?, context.dimension)?;
+            let counts = read_counts(&part.need("counts")?, dimension)?;
             let shown: Vec<toml::Value> = counts
                 .iter()
-                .take(context.dimension.count())
+                .take(dimension.count())
                 .map(|n| to_integer(*n))
                 .collect();
             part.record("counts", shown);
@@ -153,18 +152,11 @@ fn read_lattice(
                 layers: read_layers(&mut part, shape)?,
             },
         },
-        _ => {
-            if context.quadrature == Quadrature::Bonds {
-                return Err(part
-                    .problem("rings", format!("`{}.rings`: concentric rings have no lattice bonds", field.path))
-                    .help("write quadrature = \"particles\" in [scheme], or a lattice by spacing or per_radius"));
-            }
-            Lattice::Rings {
-                rings: part.count("rings")?.unwrap_or(1),
-                per_ring: part.count("per_ring")?.unwrap_or(8),
-                layers: read_layers(&mut part, shape)?,
-            }
-        }
+        _ => Lattice::Rings {
+            rings: part.count("rings")?.unwrap_or(1),
+            per_ring: part.count("per_ring")?.unwrap_or(8),
+            layers: read_layers(&mut part, shape)?,
+        },
     };
     section.record("lattice", part.finish());
     Ok((lattice, field.origin().clone()))

@@ -184,7 +184,6 @@ fn read(name: &str, source: &mut Source) -> Result<Case, Problem> {
     let materials = Materials::read(section.node("material"))?;
     let context = Context {
         dimension,
-        quadrature: scheme.quadrature,
         materials: &materials,
         folder: Path::new(&source.file).parent().unwrap_or(Path::new("")),
     };

@@ -103,7 +103,7 @@ fn dissipation_limits(model: &Model, found: &mut Vec<String>) {
         .map(|body| {
             let d = model.dimension.count();
             let reference = match scheme.smoothing_reference {
-                SmoothingReference::Spacing => body.body.spacing,
+                SmoothingReference::Spacing => body.body.support_spacing,
                 SmoothingReference::Volume => {
                     let volume: f64 = body.body.volumes.iter().sum();
                     #[expect(

@@ -142,7 +142,7 @@ fn set_up_errors_of_the_solver_point_at_the_body() {
 }
 
 #[test]
-fn rings_need_quadrature_at_the_particles() {
+fn rings_are_read_with_either_quadrature() {
     let disc = GOOD.replace(
         "box = { min = [\"0 mm\", \"1 mm\"], max = [\"8 mm\", \"57 mm\"] }",
         "disc = { centre = [0, 1], radius = 0.5 }",
@@ -150,19 +150,11 @@ fn rings_need_quadrature_at_the_particles() {
     let rings = disc
         .replace("counts = [8, 50]", "rings = 4")
         .replace("billet.top", "billet.rim");
-    let message = parse("c", "c.toml", &rings, &[])
-        .expect_err("no bonds")
-        .to_string();
-    assert!(
-        message.contains("concentric rings have no lattice bonds"),
-        "{message}"
-    );
-    let particles = rings.replace(
-        "cfl = 0.3",
-        "cfl = 0.3\n[scheme]\nquadrature = \"particles\"",
-    );
-    let case = parse("c", "c.toml", &particles, &[]).expect("valid");
-    assert_eq!(case.particles(), 81);
+    for quadrature in ["particles", "bonds"] {
+        let scheme = format!("cfl = 0.3\n[scheme]\nquadrature = \"{quadrature}\"");
+        let case = parse("c", "c.toml", &rings.replace("cfl = 0.3", &scheme), &[]).expect("valid");
+        assert_eq!(case.particles(), 81);
+    }
 }
 
 #[test]

@@ -19,7 +19,8 @@ pub struct Body {
     /// Positions of the nodes, m.
     pub positions: Vec<Vec3>,
     /// Tributary volumes, m³ (of 1 m thickness in plane strain): half a cell on a face, quarter on
-    /// an edge, eighth at a corner. They add up to the volume of the shape to round-off.
+    /// an edge, eighth at a corner; on rings equal parts of an annulus. They add up to the volume of the shape
+    /// to round-off.
     pub volumes: Vec<f64>,
     /// Interpolation weights, m³: the volume that would belong to the node if the body went on
     /// beyond its boundary, so that the weights of a kernel sum stay those of the interior.
@@ -28,9 +29,13 @@ pub struct Body {
     pub weights: Vec<f64>,
     /// Smallest distance of two nodes, m.
     pub spacing: f64,
-    /// Pairs of lattice neighbours; none for rings.
+    /// Length that smoothing lengths are measured in, m: the spacing on a lattice, the distance of the rings
+    /// (or of the layers, if that is smaller) on rings.
+    pub support_spacing: f64,
+    /// Pairs of neighbours.
     pub bonds: Option<Bonds>,
-    /// Full lattice cells, in the order of their lowest corner; empty for rings.
+    /// Full lattice cells, in the order of their lowest corner; between rings pairs of triangles, strip by
+    /// strip outwards and layer by layer, none if the first ring has an odd number of nodes or fewer than six.
     pub cells: Cells,
     /// Whether the node lies on the boundary: it lacks a lattice neighbour (or lies on the outer
     /// ring or an end layer).
@@ -41,19 +46,21 @@ pub struct Body {
 }
 
 /// Bonds of a body: pairs of nearest lattice neighbours along the axes, in the order of their
-/// lower node, then of the axes. All vectors have one entry per bond.
+/// lower node, then of the axes; on rings the sides of the triangles between them and the lines along the
+/// axis. All vectors have one entry per bond.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bonds {
-    /// The two nodes; the first has the smaller coordinate.
+    /// The two nodes; the first has the smaller coordinate, on rings the smaller radius or height.
     pub ends: Vec<[u32; 2]>,
-    /// Axis along which the bond lies: 0, 1 or 2.
+    /// Axis along which the bond lies: 0, 1 or 2; on rings 0 outwards, 1 along a ring, 2 along the axis.
     pub directions: Vec<u8>,
     /// Midpoints, m.
     pub midpoints: Vec<Vec3>,
     /// Volume of the part of the body that is nearest to the midpoint, m³: a quarter (plane
     /// strain) or a twelfth (3D) of every full cell at the bond, and what lies inside the shape of
-    /// the cells that it clips. They add up to the volume of the shape to round-off, and in a body
-    /// with bonds a node's tributary volume is half the sum over its bonds.
+    /// the cells that it clips; on rings a third of every triangle or a ninth of every prism at the bond.
+    /// They add up to the volume of the shape to round-off, and on a lattice a node's tributary volume is half
+    /// the sum over its bonds.
     pub volumes: Vec<f64>,
 }
 

@@ -89,6 +89,7 @@ pub(crate) fn build(
         volumes: node_volumes,
         weights: vec![cell; positions.len()],
         spacing,
+        support_spacing: spacing,
         bonds: Some(bonds),
         cells,
         boundary,

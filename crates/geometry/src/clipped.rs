@@ -61,14 +61,16 @@ pub(crate) fn build(shape: Shape, round: &Round, n: usize, layers: usize) -> Bod
     });
     let volumes = node_volumes(&bonds, positions.len());
 
+    let spacing = match dimension {
+        Dimension::PlaneStrain => step,
+        Dimension::Solid => step.min(layer),
+    };
     Body {
         dimension,
         volumes,
         weights: vec![cell; positions.len()],
-        spacing: match dimension {
-            Dimension::PlaneStrain => step,
-            Dimension::Solid => step.min(layer),
-        },
+        spacing,
+        support_spacing: spacing,
         bonds: Some(bonds),
         cells: grid.cells(),
         boundary: grid.boundary(),

@@ -85,11 +85,13 @@ pub(crate) fn build(shape: Shape, counts: [usize; 3], dimension: Dimension) -> B
         }
     });
 
+    let spacing = steps[..axes].iter().copied().fold(f64::INFINITY, f64::min);
     Body {
         dimension,
         volumes,
         weights: vec![cell; positions.len()],
-        spacing: steps[..axes].iter().copied().fold(f64::INFINITY, f64::min),
+        spacing,
+        support_spacing: spacing,
         bonds: Some(bonds),
         cells: grid.cells(),
         boundary: grid.boundary(),

@@ -1,8 +1,14 @@
 //! Discs and cylinders of concentric rings.
 
+mod strips;
+
 use std::f64::consts::PI;
 
-use crate::body::{Body, Round};
+use jstsph_tensor::Vec3;
+
+use strips::Strips;
+
+use crate::body::{Body, Bonds, Round};
 use crate::clipped::{RoundFaces, round_faces};
 use crate::face::FaceArea;
 use crate::grid::{between, share};
@@ -87,14 +93,18 @@ pub(crate) fn build(
         }
     }
     let dimension = round.dimension();
+    let offsets: Vec<[f64; 2]> = section.iter().map(|node| node.offset).collect();
+    let strips = Strips::new(rings, per_ring, round.radius, &offsets);
+    let width = round.radius / rings as f64;
     Body {
         dimension,
         spacing: smallest_distance(round, rings, per_ring, layers),
-        bonds: None,
-        cells: match dimension {
-            Dimension::PlaneStrain => Cells::Quads(Vec::new()),
-            Dimension::Solid => Cells::Hexes(Vec::new()),
+        support_spacing: match dimension {
+            Dimension::PlaneStrain => width,
+            Dimension::Solid => width.min(layer),
         },
+        bonds: Some(bonds(&strips, dimension, layers, layer, &positions)),
+        cells: cells(&strips, dimension, layers, offsets.len()),
         faces: round_faces(round, faces),
         positions,
         volumes,
@@ -103,6 +113,67 @@ pub(crate) fn build(
         surface: None,
         shape,
     }
+}
+
+/// The bonds of the section in every layer and those between layers, in the order of their first node.
+///
+/// A triangle of the section is the bottom of a prism, whose nine edges are bonds with a ninth of its volume
+/// each.
+fn bonds(
+    strips: &Strips,
+    dimension: Dimension,
+    layers: usize,
+    layer: f64,
+    positions: &[Vec3],
+) -> Bonds {
+    let mut bonds = Bonds {
+        ends: Vec::new(),
+        directions: Vec::new(),
+        midpoints: Vec::new(),
+        volumes: Vec::new(),
+    };
+    let mut add = |ends: [u32; 2], direction: u8, volume: f64| {
+        let [a, b] = ends.map(|end| positions[end as usize]);
+        bonds.ends.push(ends);
+        bonds.directions.push(direction);
+        bonds.midpoints.push((a + b) * 0.5);
+        bonds.volumes.push(volume);
+    };
+    for k in 0..layers {
+        let height = match dimension {
+            Dimension::PlaneStrain => layer,
+            Dimension::Solid => layer * share(k, layers) * 2.0 / 3.0,
+        };
+        let below = (k * strips.node_areas.len()) as u32;
+        let above = below + strips.node_areas.len() as u32;
+        let mut across = strips.bonds.iter().peekable();
+        for (node, area) in (0u32..).zip(&strips.node_areas) {
+            while let Some(bond) = across.next_if(|bond| bond.ends[0] == node) {
+                let ends = bond.ends.map(|end| end + below);
+                add(ends, bond.direction, bond.area * height);
+            }
+            if k + 1 < layers {
+                add([node + below, node + above], 2, area * layer / 3.0);
+            }
+        }
+    }
+    bonds
+}
+
+/// The cells of the section, or the prisms on them.
+fn cells(strips: &Strips, dimension: Dimension, layers: usize, per_layer: usize) -> Cells {
+    if dimension == Dimension::PlaneStrain {
+        return Cells::Quads(strips.quads.clone());
+    }
+    let mut hexes = Vec::with_capacity(strips.quads.len() * (layers - 1));
+    for k in 0..layers - 1 {
+        for quad in &strips.quads {
+            let [a, b, c, d] = quad.map(|node| node + (k * per_layer) as u32);
+            let [e, f, g, h] = quad.map(|node| node + ((k + 1) * per_layer) as u32);
+            hexes.push([a, b, c, d, e, f, g, h]);
+        }
+    }
+    Cells::Hexes(hexes)
 }
 
 /// Nodes of one layer. Ring m owns the annulus between the radii (m ± ½) radius / rings, cut off

@@ -60,6 +60,16 @@ fn rings(layers: usize) -> Lattice {
     }
 }
 
+/// Whether the nodes lie on rings: their section is no square lattice.
+fn is_wound(body: &Body) -> bool {
+    let bonds = body.bonds.as_ref().unwrap();
+    let mut arms = bonds
+        .ends
+        .iter()
+        .map(|&[a, b]| body.positions[b as usize] - body.positions[a as usize]);
+    arms.any(|arm| arm.iter().filter(|x| x.abs() > 1e-9 * arm.norm()).count() > 1)
+}
+
 /// One of each kind.
 fn every_kind() -> Vec<Body> {
     vec![
@@ -71,6 +81,22 @@ fn every_kind() -> Vec<Body> {
         cylinder(Axis::Y, clipped(9, 4)),
         cylinder(Axis::Z, clipped(1, 2)),
         cylinder(Axis::Z, rings(41)),
+        cylinder(
+            Axis::X,
+            Lattice::Rings {
+                rings: 4,
+                per_ring: 6,
+                layers: 41,
+            },
+        ),
+        cylinder(
+            Axis::Y,
+            Lattice::Rings {
+                rings: 4,
+                per_ring: 5,
+                layers: 41,
+            },
+        ),
     ]
 }
 
@@ -187,8 +213,8 @@ fn tributary_volumes_of_boxes_are_halves_quarters_and_eighths() {
 
 #[test]
 fn inner_bonds_have_a_half_or_a_third_of_a_cell_and_nodes_half_their_bonds() {
-    for body in every_kind() {
-        let Some(bonds) = &body.bonds else { continue };
+    for body in every_kind().into_iter().filter(|body| !is_wound(body)) {
+        let bonds = body.bonds.as_ref().unwrap();
         let parts = body.dimension.count() as f64;
         let mut halves = vec![0.0; body.positions.len()];
         let mut inner = 0;
@@ -217,6 +243,35 @@ fn inner_bonds_have_a_half_or_a_third_of_a_cell_and_nodes_half_their_bonds() {
         }
         let boxed = matches!(body.shape, Shape::Box { .. });
         assert!(inner > 0 || !boxed, "no inner bond in {:?}", body.shape);
+    }
+}
+
+/// Constants and linears of the axis are integrated exactly by the bonds, those of the section by symmetry.
+#[test]
+fn bonds_of_rings_have_the_volume_and_the_middle_of_the_body() {
+    let wound: Vec<Body> = every_kind().into_iter().filter(is_wound).collect();
+    assert_eq!(wound.len(), 4);
+    for body in wound {
+        let bonds = body.bonds.as_ref().unwrap();
+        let volume = body.shape.volume(body.dimension);
+        assert_close(sum(&bonds.volumes), volume, "volume of the bonds");
+        assert!(bonds.volumes.iter().all(|v| *v > 0.0));
+        let moment: Vec3 = bonds
+            .midpoints
+            .iter()
+            .zip(&bonds.volumes)
+            .map(|(x, v)| x * *v)
+            .sum();
+        let (low, high) = body.shape.bounds();
+        let error = (moment / volume - (low + high) * 0.5).norm();
+        assert!(error < 1e-14, "{error:e}");
+        // Neighbours only: nothing longer than two sides of a cell.
+        let longest = bonds
+            .ends
+            .iter()
+            .map(|&[a, b]| (body.positions[b as usize] - body.positions[a as usize]).norm())
+            .fold(0.0, f64::max);
+        assert!(longest < 2.0 * body.support_spacing, "{longest}");
     }
 }
 

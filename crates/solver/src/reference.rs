@@ -323,7 +323,7 @@ impl Reference {
 fn support(input: &ModelBody, dimension: Dimension, scheme: &Scheme) -> Support {
     let body = &input.body;
     let length = match scheme.smoothing_reference {
-        SmoothingReference::Spacing => body.spacing,
+        SmoothingReference::Spacing => body.support_spacing,
         SmoothingReference::Volume => {
             let total: f64 = body.volumes.iter().sum();
             (total / body.volumes.len() as f64).powf(1.0 / dimension.count() as f64)

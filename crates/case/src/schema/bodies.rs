@@ -280,7 +280,7 @@ pub const LATTICE: &[Key] = &[
         "rings",
         Count(1),
         Optional,
-        "concentric rings around the centre node, for a disc or cylinder (quadrature at the particles only)",
+        "concentric rings around the centre node, for a disc or cylinder",
     ),
     key(
         "per_ring",
