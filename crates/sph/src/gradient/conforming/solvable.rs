@@ -37,7 +37,7 @@ pub(super) fn make_solvable(
             spread += arm * arm.transpose() * weights[c];
         }
         if plane {
-            moment = moment * Mat3::from_diagonal(&Vec3::new(1.0, 1.0, 0.0));
+            moment *= Mat3::from_diagonal(&Vec3::new(1.0, 1.0, 0.0));
         }
         let tolerance = RANK_TOLERANCE * spread.norm();
         let inverse = spread
