@@ -19,6 +19,10 @@ use crate::verdict::{duration, seconds};
 /// Time spent on measuring the speed.
 const TRIAL: Duration = Duration::from_millis(500);
 
+/// Defect of summation by parts, in faces, above which the boundary correction is worth a word: ten times
+/// what boxes have with the default smoothing length and the widest that is usual.
+const WORTH_CORRECTING: f64 = 0.05;
+
 /// Validates a case and says what would run.
 pub(crate) fn run(options: &CheckOptions, console: &mut Console<'_>) -> Result<u8, CliError> {
     let case = jstsph_case::load(&options.case, &options.overrides)?;
@@ -83,11 +87,11 @@ fn describe(case: &Case, mut simulation: Simulation, threads: usize) -> String {
         );
         // How far a constant stress is from giving no force inside: an error that does not converge.
         let inner = |a: usize| !input.body.boundary[a];
+        let defect = reference.summation_defect(index, inner);
         let _ = write!(
             text,
-            "    smoothing length {:.4e} m; summation by parts holds to {:.1e} of a face inside",
+            "    smoothing length {:.4e} m; summation by parts holds to {defect:.1e} of a face inside",
             body.support.smoothing_length,
-            reference.summation_defect(index, inner)
         );
         let _ = match body.correction {
             Some(correction) => writeln!(
@@ -95,6 +99,9 @@ fn describe(case: &Case, mut simulation: Simulation, threads: usize) -> String {
                 " after {} rows of the gradient were corrected",
                 correction.points
             ),
+            None if defect > WORTH_CORRECTING => {
+                writeln!(text, " (scheme.boundary_correction = true makes it hold)")
+            }
             None => writeln!(text),
         };
     }
