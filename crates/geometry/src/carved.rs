@@ -19,7 +19,7 @@ use crate::{Cells, Dimension, GeometryError, Shape};
 const TOLERANCE: f64 = 1e-4;
 
 /// Sampling lines per cell and direction.
-const SAMPLES: [usize; 2] = [32, 8];
+pub(crate) const SAMPLES: [usize; 2] = [32, 8];
 
 /// Part of a cell by which a full one may fall short because of rounding.
 const FULL: f64 = 1e-9;

@@ -4,14 +4,11 @@ use std::collections::BTreeMap;
 
 use jstsph_tensor::Vec3;
 
-use crate::carved::Lattice;
+use crate::carved::{Lattice, SAMPLES};
 use crate::chords::{Chords, chords, without};
 use crate::face::{FaceArea, FaceKind};
 use crate::grid::Grid;
 use crate::{Body, Dimension};
-
-/// Lines along x per cell and direction across.
-const LINES: [usize; 2] = [32, 16];
 
 /// The whole surface of a body in parts, each given to a node near it.
 ///
@@ -68,12 +65,8 @@ pub(crate) fn carved_surface(
             positions,
         },
     );
-    let mut sides = BTreeMap::new();
-    let [_, ny, nz] = lattice.cell_counts();
-    for (k, j) in (0..nz).flat_map(|k| (0..ny).map(move |j| (k, j))) {
-        bars.collect(j, k, &mut sides);
-    }
-    let parts = sides
+    let parts = bars
+        .sides()
         .into_iter()
         .map(|((node, side), Side { area, moment })| {
             let mut normal = Vec3::zeros();
@@ -97,10 +90,15 @@ struct Nearest<'a> {
 }
 
 impl Nearest<'_> {
-    /// The lattice point itself where it is a node, else the nearest node at most two points away. The
-    /// point is taken from just inside, so that a surface between two nodes belongs to the body's own.
-    fn find(&self, x: &Vec3) -> Option<u32> {
+    /// The node at the nearest lattice point, else the nearest one at most two points away; of those that
+    /// lie beyond the surface only such as the body connects with it: not those across a slot.
+    fn find(&self, x: &Vec3, axis: usize, outwards: f64) -> Option<u32> {
         let lattice = self.lattice;
+        let is_connected = |node: u32| {
+            let place = self.positions[node as usize];
+            let beyond = (place[axis] - x[axis]) * outwards;
+            beyond < 1e-6 * lattice.steps[axis] || lattice.contains(&((place + x) * 0.5))
+        };
         let low = lattice.place([0; 3]);
         let point: [usize; 3] = std::array::from_fn(|axis| {
             if axis < lattice.dimension.count() {
@@ -111,7 +109,7 @@ impl Nearest<'_> {
             }
         });
         let node = self.nodes[lattice.flat(point)];
-        if node != u32::MAX {
+        if node != u32::MAX && is_connected(node) {
             return Some(node);
         }
         let range = |axis: usize| {
@@ -124,7 +122,7 @@ impl Nearest<'_> {
                 let node = self.nodes[lattice.flat([i, j, k])];
                 if node != u32::MAX {
                     let square = (self.positions[node as usize] - x).norm_squared();
-                    if square < least {
+                    if square < least && is_connected(node) {
                         (best, least) = (Some(node), square);
                     }
                 }
@@ -134,12 +132,14 @@ impl Nearest<'_> {
     }
 }
 
-/// The bars of a shape: lines in the middle of `lines` × `layers` equal parts of every row of cells.
+/// The bars of a shape: lines along x in the middle of equal parts of every row of cells.
 struct Bars<'a> {
     lattice: &'a Lattice<'a>,
     nearest: Nearest<'a>,
-    lines: usize,
-    layers: usize,
+    /// Bars per cell and direction.
+    samples: usize,
+    /// Bars along y and z in the whole lattice.
+    counts: [usize; 2],
     /// Lowest corner of the lattice, m.
     low: Vec3,
     /// Width of a bar along y and z, m.
@@ -148,26 +148,27 @@ struct Bars<'a> {
 
 impl<'a> Bars<'a> {
     fn new(lattice: &'a Lattice<'a>, nearest: Nearest<'a>) -> Self {
-        let lines = LINES[lattice.dimension.count() - 2];
+        let samples = SAMPLES[lattice.dimension.count() - 2];
         let layers = match lattice.dimension {
             Dimension::PlaneStrain => 1,
-            Dimension::Solid => lines,
+            Dimension::Solid => samples,
         };
+        let [_, ny, nz] = lattice.cell_counts();
         Self {
             lattice,
             nearest,
-            lines,
-            layers,
+            samples,
+            counts: [ny * samples, nz * layers],
             low: lattice.place([0; 3]),
             width: [
-                lattice.steps[1] / lines as f64,
+                lattice.steps[1] / samples as f64,
                 lattice.steps[2] / layers as f64,
             ],
         }
     }
 
-    /// Middle of the bars in line `line` of layer `layer`, counted over the whole lattice.
-    fn middle(&self, line: isize, layer: isize) -> [f64; 2] {
+    /// Middle of a bar along y and z, m.
+    fn middle(&self, line: usize, layer: usize) -> [f64; 2] {
         let z = match self.lattice.dimension {
             Dimension::PlaneStrain => 0.0,
             Dimension::Solid => self.low.z + (layer as f64 + 0.5) * self.width[1],
@@ -175,46 +176,49 @@ impl<'a> Bars<'a> {
         [self.low.y + (line as f64 + 0.5) * self.width[0], z]
     }
 
-    fn chords(&self, line: isize, layer: isize) -> Chords {
-        let [_, ny, nz] = self.lattice.cell_counts();
-        let is_within = |at: isize, count: usize| 0 <= at && at < count as isize;
-        if !is_within(line, ny * self.lines) || !is_within(layer, nz * self.layers) {
-            return Chords::new();
+    /// The bars of one layer; nothing beyond the last.
+    fn layer(&self, layer: usize) -> Vec<Chords> {
+        let bar = |line| {
+            let [y, z] = self.middle(line, layer);
+            chords(self.lattice.shape, y, z, self.lattice.dimension)
+        };
+        match layer < self.counts[1] {
+            true => (0..self.counts[0]).map(bar).collect(),
+            false => vec![Chords::new(); self.counts[0]],
         }
-        let [y, z] = self.middle(line, layer);
-        chords(self.lattice.shape, y, z, self.lattice.dimension)
     }
 
-    /// Adds the surface of all bars in a row of cells.
-    fn collect(&self, j: usize, k: usize, sides: &mut Sides) {
-        for (t, s) in (0..self.layers).flat_map(|t| (0..self.lines).map(move |s| (t, s))) {
-            let (line, layer) = (
-                (j * self.lines + s) as isize,
-                (k * self.layers + t) as isize,
-            );
-            let own = self.chords(line, layer);
-            if own.is_empty() {
-                continue;
-            }
-            let [y, z] = self.middle(line, layer);
-            let end = self.width[0] * self.width[1];
-            for [from, to] in &own {
-                self.add(sides, 0, end, Vec3::new(*from, y, z));
-                self.add(sides, 1, end, Vec3::new(*to, y, z));
-            }
-            let [dy, dz] = self.width;
-            let mut flank = |side: usize, line: isize, layer: isize, width: f64, at: [f64; 2]| {
-                for piece in without(&own, &self.chords(line, layer)) {
-                    self.add_along(sides, side, piece, width, at);
+    /// The surface of all bars.
+    fn sides(&self) -> Sides {
+        let mut sides = Sides::new();
+        let (nothing, mut below) = (Chords::new(), vec![Chords::new(); self.counts[0]]);
+        let mut current = self.layer(0);
+        let [dy, dz] = self.width;
+        for layer in 0..self.counts[1] {
+            let above = self.layer(layer + 1);
+            for (line, own) in current.iter().enumerate() {
+                let [y, z] = self.middle(line, layer);
+                for [from, to] in own {
+                    self.add(&mut sides, 0, dy * dz, Vec3::new(*from, y, z));
+                    self.add(&mut sides, 1, dy * dz, Vec3::new(*to, y, z));
                 }
-            };
-            flank(2, line - 1, layer, dz, [y - 0.5 * dy, z]);
-            flank(3, line + 1, layer, dz, [y + 0.5 * dy, z]);
-            if self.lattice.dimension == Dimension::Solid {
-                flank(4, line, layer - 1, dy, [y, z - 0.5 * dz]);
-                flank(5, line, layer + 1, dy, [y, z + 0.5 * dz]);
+                let before = line.checked_sub(1).map_or(&nothing, |line| &current[line]);
+                let after = current.get(line + 1).unwrap_or(&nothing);
+                let mut flank = |side: usize, other: &Chords, width: f64, at: [f64; 2]| {
+                    for piece in without(own, other) {
+                        self.add_along(&mut sides, side, piece, width, at);
+                    }
+                };
+                flank(2, before, dz, [y - 0.5 * dy, z]);
+                flank(3, after, dz, [y + 0.5 * dy, z]);
+                if self.lattice.dimension == Dimension::Solid {
+                    flank(4, &below[line], dy, [y, z - 0.5 * dz]);
+                    flank(5, &above[line], dy, [y, z + 0.5 * dz]);
+                }
             }
+            below = std::mem::replace(&mut current, above);
         }
+        sides
     }
 
     /// A piece of a flank, cut into pieces like those across.
@@ -226,7 +230,7 @@ impl<'a> Bars<'a> {
         width: f64,
         [y, z]: [f64; 2],
     ) {
-        let step = self.lattice.steps[0] / self.lines as f64;
+        let step = self.lattice.steps[0] / self.samples as f64;
         let place = |x: f64| (x - self.low.x) / step;
         let (first, last) = (place(from).floor() as isize, place(to).ceil() as isize);
         for i in first..last {
@@ -239,8 +243,10 @@ impl<'a> Bars<'a> {
         }
     }
 
+    /// `side` is twice the axis, and one more for what faces upwards.
     fn add(&self, sides: &mut Sides, side: usize, area: f64, x: Vec3) {
-        if let Some(node) = self.nearest.find(&x) {
+        let outwards = if side % 2 == 1 { 1.0 } else { -1.0 };
+        if let Some(node) = self.nearest.find(&x, side / 2, outwards) {
             let found = sides.entry((node, side)).or_default();
             found.area += area;
             found.moment += x * area;
@@ -317,6 +323,28 @@ mod tests {
             assert!(error.norm() < 2e-3, "{error}");
             let spread = moment - Mat3::identity() * (moment.trace() / 3.0);
             assert!(spread.norm() < 1e-12, "{spread}");
+        }
+    }
+
+    #[test]
+    fn the_faces_of_a_slot_belong_to_the_two_sides_of_it() {
+        let block = |x: [f64; 2], y: [f64; 2]| Shape::Box {
+            min: Vec3::new(x[0], y[0], 0.0),
+            max: Vec3::new(x[1], y[1], 0.0),
+        };
+        // A third of a spacing wide, nearer to the nodes on its left.
+        let slotted = Shape::Difference(vec![
+            block([0.0, 8.0], [0.0, 4.0]),
+            block([4.1, 4.4], [1.0, 5.0]),
+        ]);
+        let body = body(slotted, 1.0, Dimension::PlaneStrain);
+        for part in surface_parts(&body) {
+            let node = body.positions[part.node as usize];
+            if part.point.y > 1.1 && part.normal.x.abs() == 1.0 {
+                let is_left = part.normal.x > 0.0 && part.point.x < 8.0;
+                let is_left = is_left || part.point.x < 1e-9;
+                assert_eq!(node.x < 4.2, is_left, "{} {node}", part.point);
+            }
         }
     }
 
