@@ -1,5 +1,6 @@
 //! Does the scheme solve the equations? Observed orders of convergence against exact solutions.
 
+mod axisymmetric;
 mod breathing_disc;
 mod conduction;
 mod constitutive;
