@@ -33,6 +33,7 @@ pub fn particles(smoothing_ratio: f64) -> Scheme {
         projection: true,
         inertia_scale: 1.0,
         smallest_time_step: 1e-6,
+        substeps: 1,
     }
 }
 

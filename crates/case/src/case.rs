@@ -237,6 +237,9 @@ fn read(name: &str, source: &mut Source) -> Result<Case, Problem> {
         heat,
         scheme,
     };
+    if let (2.., Some(needed)) = (scheme.substeps, model.lacks_for_substeps()) {
+        return Err(time.refuse_substeps(needed));
+    }
     let warnings = plausibility::warnings(&Facts {
         model: &model,
         end: time.settings.end,

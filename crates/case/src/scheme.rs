@@ -21,9 +21,29 @@ pub(crate) struct Time {
     pub(crate) integrator: Integrator,
     pub(crate) step_limit: StepLimit,
     pub(crate) smallest_time_step: f64,
+    pub(crate) substeps: u32,
     pub(crate) inertia_scale: f64,
     pub(crate) resolved: toml::Table,
+    /// Where `substeps` is written.
+    substeps_origin: Option<Origin>,
 }
+
+impl Time {
+    /// `substeps` do not go with the rest of the case, which would need `needed`.
+    pub(crate) fn refuse_substeps(&self, needed: &str) -> Problem {
+        let origin = self.substeps_origin.clone().unwrap_or(Origin::File(0..0));
+        let message = format!(
+            "`time.substeps` is {}, but sub-steps need {needed}",
+            self.substeps
+        );
+        Problem::new(&origin, message).help(
+            "time.substeps = 1 makes all steps equal; more go with the leapfrog, bonds, limit = \"acoustic\" and formulation = \"pFHJ\", without stabilisation, projection, heat, tractions and damage",
+        )
+    }
+}
+
+/// More have never paid: see docs/performance.md.
+const LARGEST_SUBSTEPS: u32 = 64;
 
 /// Reads `[time]`.
 pub(crate) fn read_time(node: &Node) -> Result<Time, Problem> {
@@ -41,6 +61,8 @@ pub(crate) fn read_time(node: &Node) -> Result<Time, Problem> {
         },
     )?;
     let step_limit = section.choice("limit", schema::STEP_LIMITS)?;
+    let substeps_origin = section.node("substeps").map(|node| node.origin.clone());
+    let substeps = read_substeps(&mut section)?;
     let smallest_time_step = section.number("smallest_step")?;
     let inertia_scale = read_inertia_scale(&mut section)?;
     Ok(Time {
@@ -48,9 +70,24 @@ pub(crate) fn read_time(node: &Node) -> Result<Time, Problem> {
         integrator,
         step_limit,
         smallest_time_step,
+        substeps,
         inertia_scale,
         resolved: section.finish(),
+        substeps_origin,
     })
+}
+
+/// Most sub-steps of a step: a power of two.
+fn read_substeps(section: &mut Section<'_>) -> Result<u32, Problem> {
+    let count = section.count("substeps")?.unwrap_or(1);
+    match u32::try_from(count) {
+        Ok(substeps) if substeps.is_power_of_two() && substeps <= LARGEST_SUBSTEPS => Ok(substeps),
+        _ => Err(section
+            .problem("substeps", format!("`time.substeps` is {count}"))
+            .help(format!(
+                "it must be a power of two from 1 (all steps equal) to {LARGEST_SUBSTEPS}"
+            ))),
+    }
 }
 
 /// `rate_scale` and `mass_scale` are two names of one thing: the factor on the inertia.
@@ -116,6 +153,7 @@ pub(crate) fn read_scheme(
         projection,
         inertia_scale: time.inertia_scale,
         smallest_time_step: time.smallest_time_step,
+        substeps: time.substeps,
     };
     Ok((scheme, section.finish(), resolved))
 }

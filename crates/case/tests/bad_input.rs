@@ -21,7 +21,7 @@ fn the_whole_message_reads_like_this() {
            |\n\
          5 | clf = 0.3\n  \
            | ^^^\n  \
-           = allowed: end, cfl, limit, integrator, smallest_step, rate_scale, mass_scale\n  \
+           = allowed: end, cfl, limit, substeps, integrator, smallest_step, rate_scale, mass_scale\n  \
            = did you mean `cfl`?"
     );
 }

@@ -232,3 +232,48 @@ fn combinations_of_shapes_are_read_and_their_mistakes_placed() {
         &["body `billet` is a box and has no face `facing_top`"],
     );
 }
+
+#[test]
+fn substeps_are_a_power_of_two_and_need_the_scheme_they_were_made_for() {
+    for count in ["3", "128"] {
+        expect(
+            "cfl = 0.3",
+            &format!("cfl = 0.3\nlimit = \"acoustic\"\nsubsteps = {count}"),
+            &[
+                &format!("c.toml:7:12: `time.substeps` is {count}"),
+                "a power of two from 1 (all steps equal) to 64",
+            ],
+        );
+    }
+    expect(
+        "cfl = 0.3",
+        "substeps = 0",
+        &["c.toml:5:12: `time.substeps`"],
+    );
+    let acoustic = "limit = \"acoustic\"\nsubsteps = 8";
+    for (written, needed) in [
+        ("substeps = 8", "the acoustic limit of the time step"),
+        (&format!("integrator = \"rk4\"\n{acoustic}"), "the leapfrog"),
+        (
+            &format!("{acoustic}\n[scheme]\nquadrature = \"particles\""),
+            "bonds as quadrature",
+        ),
+        (
+            &format!("{acoustic}\n[stabilisation]\nupwind = 0.1"),
+            "a scheme without stabilisation",
+        ),
+    ] {
+        expect(
+            "cfl = 0.3",
+            written,
+            &[
+                &format!("`time.substeps` is 8, but sub-steps need {needed}"),
+                "time.substeps = 1 makes all steps equal",
+                "substeps = 8",
+            ],
+        );
+    }
+    let case = GOOD.replace("cfl = 0.3", acoustic);
+    let case = parse("c", "c.toml", &case, &[]).expect("it has all that is needed");
+    assert_eq!(case.model.scheme.substeps, 8);
+}

@@ -34,6 +34,14 @@ impl<M: Material> Block<M> {
     pub fn commit(&mut self) {
         std::mem::swap(&mut self.committed, &mut self.candidate);
     }
+
+    /// Accepts the latest evaluation of some points, by a copy: the others keep both histories.
+    ///
+    /// # Panics
+    /// If there are no such points.
+    pub fn commit_points(&mut self, points: std::ops::Range<usize>) {
+        self.committed[points.clone()].copy_from_slice(&self.candidate[points]);
+    }
 }
 
 /// Work on a block whatever its model, chosen once per call and not once per point.
@@ -103,5 +111,24 @@ mod tests {
         assert_eq!(block.visit_ref(&mut Committed), 0.0);
         block.commit();
         assert_eq!(block.visit_ref(&mut Committed), candidate);
+    }
+
+    #[test]
+    fn some_points_can_be_committed_before_the_others() {
+        let mut block = library()[0].spec.block(3);
+        let candidate = block.visit(&mut Shear);
+        block.commit_points(1..2);
+        let strains = block.visit_ref(&mut Strains);
+        assert_eq!(strains, [0.0, candidate, 0.0]);
+    }
+
+    struct Strains;
+
+    impl BlockReader for Strains {
+        type Output = Vec<f64>;
+        fn visit<M: Material>(&mut self, block: &Block<M>) -> Vec<f64> {
+            let strain = |history: &M::History| history.equivalent_plastic_strain();
+            block.committed.iter().map(strain).collect()
+        }
     }
 }

@@ -109,6 +109,14 @@ macro_rules! register_materials {
             pub fn commit(&mut self) {
                 match self { $(Self::$model(block) => block.commit()),+ }
             }
+
+            /// Accepts the latest evaluation of some points, see [`Block::commit_points`].
+            ///
+            /// # Panics
+            /// If there are no such points.
+            pub fn commit_points(&mut self, points: std::ops::Range<usize>) {
+                match self { $(Self::$model(block) => block.commit_points(points)),+ }
+            }
         }
 
         #[cfg(test)]

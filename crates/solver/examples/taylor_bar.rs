@@ -1,6 +1,6 @@
 //! A Taylor bar built in code, without a case file: a copper cylinder hits a rigid wall.
 //!
-//! `cargo run --release -p jstsph-solver --example taylor_bar -- [per_radius] [cfl] [particles|bonds]`
+//! `cargo run --release -p jstsph-solver --example taylor_bar -- [per_radius] [cfl] [particles|bonds] [substeps]`
 #![allow(clippy::print_stdout, reason = "an example talks to its reader")]
 
 use jstsph_contact::{Friction, Law, Obstacle, Surface};
@@ -18,6 +18,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let per_radius: usize = arguments.get(1).map_or(Ok(3), |text| text.parse())?;
     let cfl: f64 = arguments.get(2).map_or(Ok(0.6), |text| text.parse())?;
     let bonds = arguments.get(3).is_none_or(|text| text == "bonds");
+    let substeps: u32 = arguments.get(4).map_or(Ok(1), |text| text.parse())?;
 
     let shape = Shape::Cylinder {
         base: Vec3::zeros(),
@@ -87,6 +88,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             projection: !bonds,
             inertia_scale: 1.0,
             smallest_time_step: 1e-6,
+            substeps,
         },
     };
     let probes = [

@@ -103,6 +103,7 @@ fn problem(intervals: usize, integrator: Integrator, cfl: f64) -> Result<(Model,
             projection: false,
             inertia_scale: 1.0,
             smallest_time_step: 1e-6,
+            substeps: 1,
         },
     };
     Ok((model, frequency))

@@ -3,6 +3,7 @@
 
 use jstsph_tensor::{Mat3, Vec3, double_dot, mean_trace, symmetric_part};
 
+use crate::local_steps::Groups;
 use crate::model::{Quadrature, Scheme};
 use crate::parallel;
 use crate::reference::{BodyReference, Reference};
@@ -37,6 +38,8 @@ struct Elasticity<'a> {
     /// Whether the pressure is that of the particles' J, with bonds.
     averaged: bool,
     deformation: Option<(&'a [Mat3], &'a [Mat3])>,
+    /// Leaves out the stiffness of the fine points and particles.
+    without_fine: Option<&'a Groups>,
 }
 
 impl Elasticity<'_> {
@@ -47,6 +50,20 @@ impl Elasticity<'_> {
             let (f, h) = (&gradients[q], &cofactors[q]);
             h * (3.0 / double_dot(f, h))
         })
+    }
+
+    /// Whether the stiffness of a point is left out.
+    #[inline]
+    fn leaves_out_point(&self, q: usize) -> bool {
+        self.without_fine
+            .is_some_and(|groups| groups.fine.contains(q))
+    }
+
+    /// Whether the pressure of a particle is left out.
+    #[inline]
+    fn leaves_out_particle(&self, a: usize) -> bool {
+        self.without_fine
+            .is_some_and(|groups| groups.fine_jacobian[a])
     }
 }
 
@@ -74,7 +91,7 @@ impl Frequency {
     ///
     /// with the isotropic elasticity of the undeformed material, by a few Lanczos steps from a vector
     /// without structure: within a per cent, from below. With `state` that of the deformed body, else
-    /// F = 1. Stresses themselves (of the order of the flow stress over the moduli) and the softening by
+    /// F = 1; `without_fine` leaves out what makes sub-steps. Stresses themselves (of the order of the flow stress over the moduli) and the softening by
     /// plastic flow are left out; the latter only lowers frequencies.
     pub(crate) fn largest(
         &mut self,
@@ -82,6 +99,7 @@ impl Frequency {
         body: &BodyReference,
         scheme: &Scheme,
         state: Option<&State>,
+        without_fine: Option<&Groups>,
     ) -> f64 {
         let points = body.points.clone();
         let elasticity = Elasticity {
@@ -94,6 +112,7 @@ impl Frequency {
                 let gradients = &state.deformation_gradient[points.clone()];
                 (gradients, &state.cofactor[points.clone()])
             }),
+            without_fine,
         };
         let volume = elasticity.volume;
         let count = volume.len();
@@ -161,12 +180,23 @@ impl Frequency {
             };
             let strain = symmetric_part(&gradient);
             *dilation = strain.trace();
+            let shear = if elasticity.leaves_out_point(q) {
+                0.0
+            } else {
+                shear
+            };
             *tensor = (strain - Mat3::identity() * mean_trace(&strain)) * shear;
         });
         let dilation = &*dilation;
         let of_particles = &mut self.particle_dilation[..particles];
         if elasticity.averaged {
-            parallel::fill(of_particles, |a| body.shares.mean(a, |q| dilation[q]));
+            parallel::fill(of_particles, |a| {
+                if elasticity.leaves_out_particle(a) {
+                    0.0
+                } else {
+                    body.shares.mean(a, |q| dilation[q])
+                }
+            });
         }
         let of_particles = &*of_particles;
         parallel::for_each(tensor, |q, tensor| {
@@ -213,7 +243,7 @@ impl Simulation {
             .bodies
             .iter()
             .map(|body| {
-                let largest = frequency.largest(reference, body, self.scheme(), None);
+                let largest = frequency.largest(reference, body, self.scheme(), None, None);
                 2.0 / largest * body.wave_speed / body.spacing
             })
             .fold(f64::INFINITY, f64::min)

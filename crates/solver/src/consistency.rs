@@ -1,8 +1,13 @@
 //! Checks of a model that its types cannot express.
 
+use jstsph_material::MaterialSpec;
+
 use crate::SolverError;
 use crate::constraint::MAX_OBSTACLES;
-use crate::model::{Formulation, Integrator, Model, Quadrature, StepLimit};
+use crate::model::{
+    ConditionKind, Formulation, Integrator, Model, ModelBody, Quadrature, Scheme, Stabilisation,
+    StepLimit,
+};
 
 /// Refuses a model whose parts do not fit together, or whose numbers are out of range.
 pub(crate) fn check(model: &Model) -> Result<(), SolverError> {
@@ -107,6 +112,17 @@ pub(crate) fn check(model: &Model) -> Result<(), SolverError> {
     if scheme.formulation == Formulation::EulerianKernel {
         check_eulerian(model)?;
     }
+    if !scheme.substeps.is_power_of_two() {
+        return inconsistent(format!(
+            "{} sub-steps: their number must be a power of two",
+            scheme.substeps
+        ));
+    }
+    if scheme.substeps > 1
+        && let Some(needed) = model.lacks_for_substeps()
+    {
+        return inconsistent(format!("sub-steps need {needed}"));
+    }
     if !scheme.formulation.integrates_jacobian()
         && scheme.stabilisation.jst.is_some_and(|jst| jst.on_jacobian)
     {
@@ -115,6 +131,49 @@ pub(crate) fn check(model: &Model) -> Result<(), SolverError> {
         );
     }
     Ok(())
+}
+
+impl Model {
+    /// What local time steps ([`Scheme::substeps`]) would need that the model does not have.
+    #[must_use]
+    pub fn lacks_for_substeps(&self) -> Option<&'static str> {
+        let Scheme {
+            quadrature,
+            formulation,
+            integrator,
+            step_limit,
+            stabilisation,
+            projection,
+            ..
+        } = self.scheme;
+        let mut tractions = self.conditions.iter().map(|condition| &condition.kind);
+        let failing = |body: &ModelBody| matches!(&body.material, MaterialSpec::HenckyVonMises(metal) if metal.damage.is_some());
+        let missing = [
+            (integrator != Integrator::Leapfrog, "the leapfrog"),
+            (quadrature != Quadrature::Bonds, "bonds as quadrature"),
+            (
+                step_limit != StepLimit::Acoustic,
+                "the acoustic limit of the time step",
+            ),
+            (
+                formulation != Formulation::MomentumGradientCofactorJacobian,
+                "the formulation \"pFHJ\"",
+            ),
+            (
+                stabilisation != Stabilisation::default(),
+                "a scheme without stabilisation",
+            ),
+            (projection, "a scheme without projection"),
+            (self.heat.is_some(), "temperatures that do not change"),
+            (
+                tractions.any(|kind| matches!(kind, ConditionKind::Traction { .. })),
+                "a model without tractions",
+            ),
+            (self.bodies.iter().any(failing), "materials without damage"),
+        ];
+        let mut missing = missing.into_iter();
+        missing.find_map(|(lacks, needed)| lacks.then_some(needed))
+    }
 }
 
 /// The Eulerian-kernel formulation exists for comparison: particles, leapfrog, viscosity.

@@ -1,12 +1,14 @@
 //! What fixes momenta from outside: prescribed velocities and contact with rigid obstacles.
 
+use std::ops::Range;
+
 use jstsph_contact::{CachedGap, ContactStep, Exchange, Surface, Wall};
 use jstsph_tensor::Vec3;
 
 use crate::force::vector;
 use crate::model::{Condition, ConditionKind, Model, ModelObstacle};
 use crate::parallel;
-use crate::reference::Reference;
+use crate::reference::{BodyReference, Reference};
 use crate::state::{ContactSlot, Impulse, Ledger, State};
 
 /// Gap below which a particle touches a wall, as a fraction of the spacing: a node that lies on
@@ -59,6 +61,18 @@ impl Prescribed {
         momentum: &mut [Vec3],
         ledger: &mut Ledger,
     ) {
+        self.apply_where(reference, (time, factor), momentum, ledger, |_, _| true);
+    }
+
+    /// The same for the particles of each body, counted in it, for which `chosen(body, particle)` holds.
+    pub(crate) fn apply_where(
+        &self,
+        reference: &Reference,
+        (time, factor): (f64, f64),
+        momentum: &mut [Vec3],
+        ledger: &mut Ledger,
+        chosen: impl Fn(usize, usize) -> bool,
+    ) {
         for (k, condition) in self.conditions.iter().enumerate() {
             let ConditionKind::Velocity(components) = &condition.kind else {
                 continue;
@@ -66,6 +80,9 @@ impl Prescribed {
             let body = &reference.bodies[condition.body];
             let mut total = Vec3::zeros();
             for &particle in &condition.particles {
+                if !chosen(condition.body, particle as usize) {
+                    continue;
+                }
                 let a = body.particles.start + particle as usize;
                 let mut change = Vec3::zeros();
                 for (axis, signal) in components.iter().enumerate() {
@@ -164,68 +181,100 @@ impl Obstacles {
         state: &mut State,
         ledger: &mut Ledger,
     ) {
-        if self.parts.is_empty() {
-            return;
+        let travel = self.travel(time, dt, stage);
+        for (body, range) in reference
+            .bodies
+            .iter()
+            .map(|body| (body, 0..body.particles.len()))
+        {
+            self.meet(&travel, (body, range), reference, state, ledger);
         }
+    }
+
+    /// How the obstacles move while particles travel over `dt` from `time`.
+    pub(crate) fn travel(&self, time: f64, dt: f64, stage: Stage) -> Travel {
         let mut velocities = [Vec3::zeros(); MAX_OBSTACLES];
         for (o, velocity) in velocities.iter_mut().enumerate().take(self.obstacles.len()) {
             *velocity = self.velocity(o, time + 0.5 * dt);
         }
-        let slots = self.parts.len();
-        let speeds = velocities.map(|velocity| velocity.norm());
-        for body in &reference.bodies {
-            let range = body.particles.clone();
-            let step = ContactStep {
-                dt,
-                tolerance: CONTACT_TOLERANCE * body.spacing,
-                density: body.density,
-                max_penetration: LARGEST_PENETRATION * body.spacing,
-            };
-            let volume = &reference.volume[range.clone()];
-            let contact = &mut ledger.contact[range.start * slots..range.end * slots];
-            let particles = (
-                &mut state.position[range.clone()],
-                &mut state.momentum[range.clone()],
-                &mut ledger.impulse[range.clone()],
-            );
-            // At least the travel of a particle relative to a wall: see `Wall::resolve_cached`.
-            let per_momentum = dt / body.density * REACH_MARGIN;
-            parallel::for_each_with_group(particles, contact, slots, |a, x, p, impulse, group| {
-                if stage.begins() {
-                    for slot in group.iter_mut() {
-                        slot.given = Exchange::default();
-                    }
-                }
-                // Most particles are far from all walls, which takes one root to see.
-                let travel = p.norm() * per_momentum;
-                let far = |(slot, (o, _)): (&ContactSlot, &(usize, usize))| {
-                    let reach = step.tolerance + travel + speeds[*o] * dt * REACH_MARGIN;
-                    !slot.cache.needs_check(&(*x - self.displacement[*o]), reach)
-                };
-                if group.iter().zip(&self.parts).all(far) {
-                    return;
-                }
-                let mut particle = Particle {
-                    x,
-                    p,
-                    impulse,
-                    volume: volume[a],
-                    stage,
-                };
-                let mut rubbed = false;
-                for (slot, part) in group.iter_mut().zip(&self.parts) {
-                    let wall = self.wall(*part, &velocities);
-                    let normal = particle.meet(&wall, slot, &step);
-                    rubbed |= particle.rub(&wall, slot, normal, &step);
-                }
-                // Friction along one wall may point into another: none is entered in the end.
-                if rubbed {
-                    for (slot, part) in group.iter_mut().zip(&self.parts) {
-                        particle.meet(&self.wall(*part, &velocities), slot, &step);
-                    }
-                }
-            });
+        Travel {
+            dt,
+            stage,
+            velocities,
+            speeds: velocities.map(|velocity| velocity.norm()),
         }
+    }
+
+    /// [`apply`](Self::apply) for a run of the particles of one body.
+    pub(crate) fn meet(
+        &self,
+        travel: &Travel,
+        (body, run): (&BodyReference, Range<usize>),
+        reference: &Reference,
+        state: &mut State,
+        ledger: &mut Ledger,
+    ) {
+        if self.parts.is_empty() {
+            return;
+        }
+        let slots = self.parts.len();
+        let Travel {
+            dt,
+            stage,
+            velocities,
+            speeds,
+        } = *travel;
+        let range = body.particles.start + run.start..body.particles.start + run.end;
+        let step = ContactStep {
+            dt,
+            tolerance: CONTACT_TOLERANCE * body.spacing,
+            density: body.density,
+            max_penetration: LARGEST_PENETRATION * body.spacing,
+        };
+        let volume = &reference.volume[range.clone()];
+        let contact = &mut ledger.contact[range.start * slots..range.end * slots];
+        let particles = (
+            &mut state.position[range.clone()],
+            &mut state.momentum[range.clone()],
+            &mut ledger.impulse[range.clone()],
+        );
+        // At least the travel of a particle relative to a wall: see `Wall::resolve_cached`.
+        let per_momentum = dt / body.density * REACH_MARGIN;
+        parallel::for_each_with_group(particles, contact, slots, |a, x, p, impulse, group| {
+            if stage.begins() {
+                for slot in group.iter_mut() {
+                    slot.given = Exchange::default();
+                }
+            }
+            // Most particles are far from all walls, which takes one root to see.
+            let travel = p.norm() * per_momentum;
+            let far = |(slot, (o, _)): (&ContactSlot, &(usize, usize))| {
+                let reach = step.tolerance + travel + speeds[*o] * dt * REACH_MARGIN;
+                !slot.cache.needs_check(&(*x - self.displacement[*o]), reach)
+            };
+            if group.iter().zip(&self.parts).all(far) {
+                return;
+            }
+            let mut particle = Particle {
+                x,
+                p,
+                impulse,
+                volume: volume[a],
+                stage,
+            };
+            let mut rubbed = false;
+            for (slot, part) in group.iter_mut().zip(&self.parts) {
+                let wall = self.wall(*part, &velocities);
+                let normal = particle.meet(&wall, slot, &step);
+                rubbed |= particle.rub(&wall, slot, normal, &step);
+            }
+            // Friction along one wall may point into another: none is entered in the end.
+            if rubbed {
+                for (slot, part) in group.iter_mut().zip(&self.parts) {
+                    particle.meet(&self.wall(*part, &velocities), slot, &step);
+                }
+            }
+        });
     }
 
     fn wall(&self, (o, part): (usize, usize), velocities: &[Vec3]) -> Wall<'_> {
@@ -236,6 +285,14 @@ impl Obstacles {
             velocity: velocities[o],
         }
     }
+}
+
+/// How obstacles move during one travel of the particles.
+pub(crate) struct Travel {
+    dt: f64,
+    stage: Stage,
+    velocities: [Vec3; MAX_OBSTACLES],
+    speeds: [f64; MAX_OBSTACLES],
 }
 
 /// A particle that walls act on, and its books.

@@ -171,7 +171,7 @@ impl Simulation {
         }
     }
 
-    /// The paper's (4.1) for the last step.
+    /// The paper's (4.1) for the last step; of points that make sub-steps, the plastic part of the last of them.
     #[must_use]
     pub fn paper_energies(&self) -> PaperEnergies {
         let (reference, work) = (&self.reference, &self.work);

@@ -1,8 +1,13 @@
 //! Staggered leapfrog: momentum at half steps, everything else at whole steps.
 
+use std::ops::Range;
+
+use jstsph_tensor::Vec3;
+
 use crate::constraint::Stage;
 use crate::model::Formulation;
 use crate::profile::Phase;
+use crate::reference::Reference;
 use crate::simulation::{Simulation, work_of};
 use crate::state::{Impulse, Ledger, State, Work};
 use crate::{SolverError, parallel, strain};
@@ -141,16 +146,35 @@ impl Simulation {
         self.obstacles
             .apply(reference, time, travel, Stage::Whole, state, ledger);
 
-        let Ledger {
-            momentum_before,
-            impulse,
-            work: total,
-            last_work,
-            friction_heat,
-            ..
-        } = ledger;
-        let momentum = &state.momentum;
-        parallel::for_each_triple(total, last_work, friction_heat, |a, total, last, heat| {
+        let all = 0..reference.position.len();
+        book(kick, reference, &state.momentum, ledger, all);
+    }
+}
+
+/// Books the work of a kick of a run of particles.
+pub(crate) fn book(
+    kick: Kick,
+    reference: &Reference,
+    momentum: &[Vec3],
+    ledger: &mut Ledger,
+    run: Range<usize>,
+) {
+    let first = run.start;
+    let Ledger {
+        momentum_before,
+        impulse,
+        work,
+        last_work,
+        friction_heat,
+        ..
+    } = ledger;
+    let (work, last_work) = (&mut work[run.clone()], &mut last_work[run.clone()]);
+    parallel::for_each_triple(
+        work,
+        last_work,
+        &mut friction_heat[run],
+        |k, total, last, heat| {
+            let a = first + k;
             let mean = (momentum_before[a] + momentum[a]) * (0.5 / reference.density[a]);
             let done = work_of(&impulse[a], &mean);
             *heat = done.friction;
@@ -166,6 +190,6 @@ impl Simulation {
                     *last = Work::default();
                 }
             }
-        });
-    }
+        },
+    );
 }

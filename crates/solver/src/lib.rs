@@ -47,6 +47,7 @@
 //!         projection: false,
 //!         inertia_scale: 1.0,
 //!         smallest_time_step: 1e-6,
+//!         substeps: 1,
 //!     },
 //! };
 //! let mut simulation = Simulation::new(model)?;
@@ -73,6 +74,7 @@ mod fields;
 mod force;
 mod heat;
 mod leapfrog;
+mod local_steps;
 mod model;
 mod parallel;
 mod probe;

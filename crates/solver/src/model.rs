@@ -372,6 +372,10 @@ pub struct Scheme {
     pub inertia_scale: f64,
     /// The run stops when the time step falls below this fraction of the first one.
     pub smallest_time_step: f64,
+    /// Most steps, a power of two, that the most compressed parts of the bodies may make within one
+    /// step of the rest; 1 makes all steps equal. Needs the leapfrog, bonds and the acoustic limit.
+    /// `[eq:local-step]`, docs/theory.md.
+    pub substeps: u32,
 }
 
 #[cfg(test)]

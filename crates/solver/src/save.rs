@@ -227,6 +227,9 @@ impl Simulation {
         if let Some(limit) = &self.acoustic {
             arrays.push(("acoustic_limit".to_owned(), limit.saved().to_vec()));
         }
+        if let Some(local) = &self.local {
+            arrays.push(("local_steps".to_owned(), local.saved()));
+        }
         if let Some(heat) = &self.heat {
             arrays.push(("heat_generated".to_owned(), heat.generated.clone()));
             arrays.push(("heat_supplied".to_owned(), heat.supplied.clone()));
@@ -288,6 +291,10 @@ impl Simulation {
         }
         if let Some(limit) = &mut self.acoustic {
             limit.restore(arrays.get("acoustic_limit", 3)?);
+        }
+        if let Some(local) = &mut self.local {
+            let saved = arrays.get("local_steps", local.saved_length())?;
+            local.restore(&self.reference, saved);
         }
         if let Some(heat) = &mut self.heat {
             arrays.scalars("heat_generated", &mut heat.generated)?;

@@ -8,6 +8,7 @@ use crate::error::Place;
 use crate::eulerian::CurrentKernels;
 use crate::force::Loads;
 use crate::heat::{HeatProcess, HeatStep, OutOfRange};
+use crate::local_steps::LocalSteps;
 use crate::model::{Formulation, Model, Scheme};
 use crate::profile::{Observer, Phase};
 use crate::reference::Reference;
@@ -16,8 +17,8 @@ use crate::state::{Impulse, Ledger, State, Work, Workspace};
 use crate::strain::Strains;
 use crate::time_step::{AcousticLimit, StableStep};
 use crate::{
-    SolverError, consistency, dissipation, force, leapfrog, parallel, projection, runge_kutta,
-    strain, stress,
+    SolverError, consistency, dissipation, force, leapfrog, local_steps, parallel, projection,
+    runge_kutta, strain, stress,
 };
 
 /// A simulation: a [`Model`] that moves.
@@ -34,7 +35,7 @@ pub struct Simulation {
     pub(crate) ledger: Ledger,
     pub(crate) prescribed: Prescribed,
     pub(crate) obstacles: Obstacles,
-    loads: Loads,
+    pub(crate) loads: Loads,
     /// Neighbours and kernels of the present positions, for the formulation that has them.
     eulerian: Option<Box<CurrentKernels>>,
     /// Temperatures that change, when they do.
@@ -56,6 +57,8 @@ pub struct Simulation {
     pub(crate) first_dt: f64,
     /// The limit by the frequency of the deformed bodies, when it is used.
     pub(crate) acoustic: Option<Box<AcousticLimit>>,
+    /// Groups with steps of their own, when they are used.
+    pub(crate) local: Option<Box<LocalSteps>>,
 }
 
 impl Simulation {
@@ -116,6 +119,7 @@ impl Simulation {
                 .then(|| Box::new(CurrentKernels::new(&model, &reference))),
             heat: HeatProcess::new(&model, &reference, &materials)?,
             acoustic: AcousticLimit::new(&model.scheme, &reference),
+            local: LocalSteps::new(&model.scheme, &reference),
             scheme: model.scheme,
             reference,
             materials,
@@ -159,9 +163,15 @@ impl Simulation {
         if self.time >= end {
             return Ok(());
         }
-        match Method::of(self.scheme.integrator) {
-            None => leapfrog::step(self, end)?,
-            Some(method) => runge_kutta::step(self, &method, end)?,
+        if let Some(mut local) = self.local.take() {
+            let result = local_steps::step(self, &mut local, end);
+            self.local = Some(local);
+            result?;
+        } else {
+            match Method::of(self.scheme.integrator) {
+                None => leapfrog::step(self, end)?,
+                Some(method) => runge_kutta::step(self, &method, end)?,
+            }
         }
         self.step += 1;
         Ok(())
@@ -429,7 +439,7 @@ impl Simulation {
         }
     }
 
-    fn constitutive(&self, failure: stress::StressFailure) -> SolverError {
+    pub(crate) fn constitutive(&self, failure: stress::StressFailure) -> SolverError {
         let (body, index) = (failure.body, failure.point);
         SolverError::Constitutive {
             place: self.place(body, index, self.current_point_position(body, index)),

@@ -3,6 +3,7 @@
 
 use jstsph_tensor::{Mat3, cofactor, double_dot, tensor_cross};
 
+use crate::local_steps::{Groups, Part};
 use crate::model::{Formulation, Quadrature};
 use crate::parallel;
 use crate::reference::Reference;
@@ -82,6 +83,52 @@ pub(crate) fn drift(
         );
     }
     constrain(strains, reference, state);
+}
+
+/// [`drift`] of F and H of a part of the points with bonds, by their velocity gradients; their changes
+/// of volume are left in the workspace.
+pub(crate) fn drift_part(
+    reference: &Reference,
+    (groups, fine): (&[Groups], bool),
+    state: &mut State,
+    work: &mut Workspace,
+    dt: f64,
+) {
+    let step = drift::Drift {
+        bonds: true,
+        plane: reference.is_plane(),
+        dt,
+    };
+    for (body, groups) in reference.bodies.iter().zip(groups) {
+        let points = body.points.clone();
+        let gradients = &work.velocity_gradient[points.clone()];
+        let out = (
+            &mut state.deformation_gradient[points.clone()],
+            &mut state.cofactor[points.clone()],
+            &mut work.volume_change[points],
+        );
+        groups
+            .fine
+            .for_each_chunk(fine, out, |first, f, h, change| {
+                step.advance(&gradients[first..first + f.len()], f, h, change);
+            });
+    }
+}
+
+/// J of the particles of a part, by the changes of volume of their bonds: `[eq:bond-volume]`.
+pub(crate) fn grow_part(
+    reference: &Reference,
+    (groups, fine): (&[Groups], bool),
+    jacobian: &mut [f64],
+    volume_change: &[f64],
+) {
+    for (body, groups) in reference.bodies.iter().zip(groups) {
+        let change = &volume_change[body.points.clone()];
+        let part = Part { groups, fine };
+        part.for_each_jacobian(&mut jacobian[body.particles.clone()], |a, jacobian| {
+            *jacobian *= body.shares.mean(a, |q| change[q]).exp();
+        });
+    }
 }
 
 /// Advances F, H and J by `dt` with their rates at the present state: one stage of TVD-RK2.

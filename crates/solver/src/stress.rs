@@ -8,6 +8,7 @@ use jstsph_material::{
 };
 use jstsph_tensor::{Mat3, double_dot};
 
+use crate::local_steps::{Groups, Part};
 use crate::model::Quadrature;
 use crate::parallel;
 use crate::reference::{BodyReference, Reference};
@@ -104,6 +105,8 @@ impl BlockReader for Failure<'_> {
 
 struct Evaluation<'a> {
     points: Points<'a>,
+    /// The points and particles that are evaluated, if not all.
+    part: Option<Part<'a>>,
     volumetric_stress: &'a mut [f64],
     scaled_stress: &'a mut [Mat3],
     plastic_work: &'a mut [f64],
@@ -123,9 +126,13 @@ impl BlockVisitor for Evaluation<'_> {
         let (model, committed): (&M, &[M::History]) = (model, committed);
         let without_jacobian = points.without_jacobian();
         if !without_jacobian {
-            parallel::fill(self.volumetric_stress, |a| {
-                model.volumetric_stress(points.jacobian[a], points.temperature[a])
-            });
+            let of_particle = |a: usize, stress: &mut f64| {
+                *stress = model.volumetric_stress(points.jacobian[a], points.temperature[a]);
+            };
+            match &self.part {
+                None => parallel::for_each(self.volumetric_stress, of_particle),
+                Some(part) => part.for_each_jacobian(self.volumetric_stress, of_particle),
+            }
         }
         let volumetric_stress: &[f64] = self.volumetric_stress;
         let pass = PointPass {
@@ -135,19 +142,25 @@ impl BlockVisitor for Evaluation<'_> {
             // Only touched by a failing point; the smallest index makes the report deterministic.
             failed: AtomicUsize::new(usize::MAX),
         };
-        parallel::for_each_chunk(
-            self.scaled_stress,
-            self.plastic_work,
-            candidate,
-            |offset, scaled_stress, plastic_work, candidate| {
-                let out = tile::Output {
-                    scaled_stress,
-                    plastic_work,
-                    candidate,
-                };
-                pass.evaluate(offset, committed, out);
-            },
-        );
+        let of_run = |offset: usize,
+                      scaled_stress: &mut [Mat3],
+                      plastic_work: &mut [f64],
+                      candidate: &mut [M::History]| {
+            let out = tile::Output {
+                scaled_stress,
+                plastic_work,
+                candidate,
+            };
+            pass.evaluate(offset, committed, out);
+        };
+        let (stress, plastic_work) = (&mut *self.scaled_stress, &mut *self.plastic_work);
+        match &self.part {
+            None => parallel::for_each_chunk(stress, plastic_work, candidate, of_run),
+            Some(Part { groups, fine }) => {
+                let out = (stress, plastic_work, &mut candidate[..]);
+                groups.fine.for_each_chunk(*fine, out, of_run);
+            }
+        }
         let failed = pass.failed;
         let failed = failed.into_inner();
         (failed != usize::MAX).then_some(failed)
@@ -230,28 +243,61 @@ pub(crate) fn evaluate(
     dt: f64,
 ) -> Result<(), StressFailure> {
     for (index, (body, material)) in reference.bodies.iter().zip(materials).enumerate() {
-        let points = points_of(strains, reference, body, state, dt);
-        let mut evaluation = Evaluation {
-            points,
+        let evaluation = Evaluation {
+            points: points_of(strains, reference, body, state, dt),
+            part: None,
             volumetric_stress: &mut work.volumetric_stress[body.particles.clone()],
             scaled_stress: &mut work.scaled_stress[body.points.clone()],
             plastic_work: &mut work.plastic_work[body.points.clone()],
         };
-        if let Some(point) = material.visit(&mut evaluation) {
-            let source = material
-                .visit_ref(&mut Failure { points, point })
-                .unwrap_or(MaterialError::NotFinite {
-                    jacobian: f64::NAN,
-                    determinant: f64::NAN,
-                });
-            return Err(StressFailure {
-                body: index,
-                point,
-                source,
-            });
-        }
+        evaluation.run(index, material)?;
     }
     Ok(())
+}
+
+/// [`evaluate`] for a part of each body. The stresses of the points go to `scaled_stress`, with the
+/// pressures of all particles that `volumetric_stress` holds.
+pub(crate) fn evaluate_part(
+    (strains, dt): (Strains, f64),
+    (reference, state): (&Reference, &State),
+    (groups, fine): (&[Groups], bool),
+    materials: &mut [MaterialBlock],
+    (volumetric_stress, scaled_stress): (&mut [f64], &mut [Mat3]),
+    plastic_work: &mut [f64],
+) -> Result<(), StressFailure> {
+    let bodies = reference.bodies.iter().zip(materials).zip(groups);
+    for (index, ((body, material), groups)) in bodies.enumerate() {
+        let evaluation = Evaluation {
+            points: points_of(strains, reference, body, state, dt),
+            part: Some(Part { groups, fine }),
+            volumetric_stress: &mut volumetric_stress[body.particles.clone()],
+            scaled_stress: &mut scaled_stress[body.points.clone()],
+            plastic_work: &mut plastic_work[body.points.clone()],
+        };
+        evaluation.run(index, material)?;
+    }
+    Ok(())
+}
+
+impl Evaluation<'_> {
+    /// Evaluates the points of one body, whose number is `body`.
+    fn run(mut self, body: usize, material: &mut MaterialBlock) -> Result<(), StressFailure> {
+        let Some(point) = material.visit(&mut self) else {
+            return Ok(());
+        };
+        let points = self.points;
+        let source = material
+            .visit_ref(&mut Failure { points, point })
+            .unwrap_or(MaterialError::NotFinite {
+                jacobian: f64::NAN,
+                determinant: f64::NAN,
+            });
+        Err(StressFailure {
+            body,
+            point,
+            source,
+        })
+    }
 }
 
 fn points_of<'a>(

@@ -61,6 +61,7 @@ pub(crate) fn scheme(quadrature: Quadrature, integrator: Integrator) -> Scheme {
         projection: !bonds,
         inertia_scale: 1.0,
         smallest_time_step: 1e-6,
+        substeps: 1,
     }
 }
 

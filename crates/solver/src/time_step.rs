@@ -2,10 +2,12 @@
 
 use std::ops::Range;
 
+use jstsph_tensor::lanes::TILE;
 use jstsph_tensor::{Mat3, double_dot, largest_eigenvalue};
 
+use crate::local_steps::Groups;
 use crate::parallel;
-use crate::reference::Reference;
+use crate::reference::{BodyReference, Reference};
 use crate::state::State;
 
 mod bound;
@@ -89,51 +91,99 @@ fn steepest_of(
     }
 }
 
+/// The steeper of two sets of points; the first that is not a number wins.
+fn steeper(a: Steepest, b: Steepest) -> Steepest {
+    if a.inverse_stretch_squared.is_nan() || a.inverse_stretch_squared >= b.inverse_stretch_squared
+    {
+        a
+    } else {
+        b
+    }
+}
+
 /// Δt / CFL = min Δx λ_min / c_p over all points: compression makes waves faster in the reference
 /// configuration by one over the smallest principal stretch (3.17; the algorithm box's formula
 /// is garbled, docs/theory.md).
 pub(crate) fn stable_step(reference: &Reference, state: &State) -> StableStep {
+    let plane = reference.is_plane();
+    smallest(reference, |_, body| {
+        let gradients = &state.deformation_gradient[body.points.clone()];
+        let cofactors = &state.cofactor[body.points.clone()];
+        parallel::reduce(
+            gradients.len(),
+            &|range| steepest_of(plane, range, gradients, cofactors),
+            &steeper,
+        )
+    })
+}
+
+/// [`stable_step`] of a part of the points; infinite when it has none.
+pub(crate) fn stable_step_of_part(
+    reference: &Reference,
+    state: &State,
+    (groups, fine): (&[Groups], bool),
+) -> StableStep {
+    let plane = reference.is_plane();
+    smallest(reference, |index, body| {
+        let gradients = &state.deformation_gradient[body.points.clone()];
+        let cofactors = &state.cofactor[body.points.clone()];
+        let tiles = &groups[index].fine;
+        let none = Steepest {
+            inverse_stretch_squared: 0.0,
+            point: 0,
+        };
+        parallel::reduce(
+            gradients.len().div_ceil(TILE),
+            &|range| {
+                let points = range.start * TILE..(range.end * TILE).min(gradients.len());
+                let mut steepest = none;
+                for run in tiles.runs(points, fine) {
+                    for first in run.clone().step_by(parallel::LEAF) {
+                        let piece = first..run.end.min(first + parallel::LEAF);
+                        let here = steepest_of(plane, piece, gradients, cofactors);
+                        steepest = steeper(steepest, here);
+                    }
+                }
+                steepest
+            },
+            &steeper,
+        )
+    })
+}
+
+/// The smallest of the times of the bodies, each by its steepest point.
+fn smallest(
+    reference: &Reference,
+    steepest: impl Fn(usize, &BodyReference) -> Steepest,
+) -> StableStep {
     let mut result = StableStep {
         time: f64::INFINITY,
         point: 0,
         stretch: 1.0,
     };
-    let plane = reference.is_plane();
-    for body in &reference.bodies {
-        let start = body.points.start;
-        let gradients = &state.deformation_gradient[body.points.clone()];
-        let cofactors = &state.cofactor[body.points.clone()];
-        let steepest = parallel::reduce(
-            gradients.len(),
-            &|range| steepest_of(plane, range, gradients, cofactors),
-            &|a: Steepest, b: Steepest| {
-                if a.inverse_stretch_squared.is_nan()
-                    || a.inverse_stretch_squared >= b.inverse_stretch_squared
-                {
-                    a
-                } else {
-                    b
-                }
-            },
-        );
+    for (index, body) in reference.bodies.iter().enumerate() {
+        let steepest = steepest(index, body);
         let stretch = 1.0 / steepest.inverse_stretch_squared.sqrt();
         let time = body.spacing * stretch / body.wave_speed;
+        let step = StableStep {
+            time,
+            point: body.points.start + steepest.point,
+            stretch,
+        };
         if time.is_nan() {
-            return StableStep {
-                time,
-                point: start + steepest.point,
-                stretch,
-            };
+            return step;
         }
         if time < result.time {
-            result = StableStep {
-                time,
-                point: start + steepest.point,
-                stretch,
-            };
+            result = step;
         }
     }
     result
+}
+
+/// Δx λ_min / c of one point.
+pub(crate) fn point_time(body: &BodyReference, gradient: &Mat3, cofactor: &Mat3) -> f64 {
+    let inverse = inverse_cauchy_green(gradient, cofactor);
+    body.spacing / (body.wave_speed * largest_eigenvalue(&inverse).sqrt())
 }
 
 /// Smallest principal stretch of a point.

@@ -32,6 +32,12 @@ pub const TIME: &[Key] = &[
         "stretch: spacing over wave speed times the smallest stretch (3.17); acoustic: 2/frequency of the deformed bodies, twice as long where few points are compressed",
     ),
     key(
+        "substeps",
+        Count(1),
+        Default("1"),
+        "most steps, a power of two, that the most compressed parts of the bodies make within one step of the rest; 1: all steps are equal",
+    ),
+    key(
         "integrator",
         Choice(|| names(INTEGRATORS)),
         Default("\"leapfrog\""),

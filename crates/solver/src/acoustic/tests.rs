@@ -70,7 +70,7 @@ fn frequencies_follow_the_deformation() {
         let reference = simulation.reference();
         let mut frequency = Frequency::new(reference);
         let mut of = |state: Option<&State>| {
-            frequency.largest(reference, &reference.bodies[0], &scheme, state)
+            frequency.largest(reference, &reference.bodies[0], &scheme, state, None)
         };
         let undeformed = of(None);
         let turn = Mat3::new(0.6, -0.8, 0.0, 0.8, 0.6, 0.0, 0.0, 0.0, 1.0);

@@ -1,6 +1,6 @@
 //! The step a run takes next: the stable one by the chosen limit, cut at the end.
 
-use super::stable_step;
+use super::{StableStep, stable_step};
 use crate::SolverError;
 use crate::acoustic::Frequency;
 use crate::model::{Scheme, StepLimit};
@@ -55,10 +55,11 @@ impl AcousticLimit {
         let age = step - self.step;
         let changed = (time - self.time).abs() > CHANGE * self.time;
         if self.gain == 0.0 || age >= LATEST || (changed && age >= EARLIEST) {
-            let limit = reference
-                .bodies
-                .iter()
-                .map(|body| 2.0 / self.frequency.largest(reference, body, scheme, Some(state)));
+            let limit = reference.bodies.iter().map(|body| {
+                2.0 / self
+                    .frequency
+                    .largest(reference, body, scheme, Some(state), None)
+            });
             self.gain = limit.fold(f64::INFINITY, f64::min) / time;
             self.time = time;
             self.step = step;
@@ -106,18 +107,33 @@ impl Simulation {
             let now = (stable.time, self.step);
             dt *= limit.gain(&self.reference, &self.scheme, &self.state, now);
         }
+        self.check_time_step(dt, &stable)?;
+        Ok(self.cut_at(end, dt))
+    }
+
+    /// Remembers the first step and refuses one far below it.
+    pub(crate) fn check_time_step(
+        &mut self,
+        dt: f64,
+        stable: &StableStep,
+    ) -> Result<(), SolverError> {
         self.smallest_stretch = stable.stretch;
         if self.first_dt == 0.0 {
             self.first_dt = dt;
         }
         let limit = self.scheme.smallest_time_step * self.first_dt;
         if dt < limit {
-            return Err(self.too_small(dt, limit, &stable));
+            return Err(self.too_small(dt, limit, stable));
         }
+        Ok(())
+    }
+
+    /// A step of `dt` that does not go beyond `end`.
+    pub(crate) fn cut_at(&self, end: f64, dt: f64) -> f64 {
         // A last step below a thousandth of the stable one would come from round-off in the sum of
         // steps; the present one is stretched over it instead.
         let rest = end - self.time;
-        Ok(if rest <= dt * 1.001 { rest } else { dt })
+        if rest <= dt * 1.001 { rest } else { dt }
     }
 }
 
