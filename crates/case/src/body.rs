@@ -87,7 +87,7 @@ pub(crate) fn read_body(
     };
     let model = ModelBody {
         name,
-        body,
+        body: body.into(),
         material,
         initial_velocity,
         initial_temperature,

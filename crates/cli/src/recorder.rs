@@ -3,17 +3,17 @@
 use std::path::PathBuf;
 
 use jstsph_case::{Case, FrameCells, FrameFormat, Interval, Precision};
-use jstsph_geometry::{Cells, Dimension};
+use jstsph_geometry::Dimension;
 use jstsph_output::{
     CellKind, Energies, Extremes, Frame, FrameOptions, FrameSeries, HISTORY_COLUMNS, HistoryRow,
-    HistoryWriter, Lattice, OutputError, ResultsFolder, write_restart,
+    HistoryWriter, OutputError, ResultsFolder, read_latest_restart, write_restart,
 };
 use jstsph_solver::{ConditionKind, ParticleFields, Saved, Simulation};
 
 use crate::copies;
 use crate::error::CliError;
-use crate::restart::{LastRow, encode};
-use crate::writer::Writer;
+use crate::restart::{self, LastRow, decode, encode};
+use crate::writer::{OwnedCells, Writer};
 
 /// Writes results at the first step at or past each interval.
 pub(crate) struct Recorder<'a> {
@@ -25,12 +25,16 @@ pub(crate) struct Recorder<'a> {
     last: LastRow,
     /// The resolved case, with the names of the copies of the files that it reads.
     resolved: String,
-    /// The state at one of the last rows, which is known to be finite.
-    good: Saved,
+    /// The state at one of the last rows, which is known to be finite; of a large run the latest
+    /// restart file is that state, because a copy takes half as much memory as the run itself.
+    good: Option<Saved>,
 }
 
 /// Fewest steps from one state that is kept to the next: a copy takes as long as one or two steps.
 const STEPS_BETWEEN_SAVES: u64 = 50;
+
+/// Evaluation points up to which the state of one of the last rows is kept in memory: 100 MB.
+const POINTS_KEPT: usize = 300_000;
 
 /// When what is due next.
 struct Next {
@@ -66,13 +70,6 @@ impl Due {
             Interval::Steps(steps) => simulation.step_count().is_multiple_of(steps),
         }
     }
-}
-
-/// Cells of all bodies with indices into the whole simulation.
-pub(crate) enum OwnedCells {
-    None,
-    Quads(Vec<[usize; 4]>),
-    Hexahedra(Vec<[usize; 8]>),
 }
 
 /// The quantities of Greto & Kulasegaram 2019, (4.1), for the last time step.
@@ -165,8 +162,7 @@ impl<'a> Recorder<'a> {
         let (history, frames) = if is_new {
             // Also when it is resumed: it may have been killed before its first row or frame. The
             // state comes first, so that where there is a history there is a state.
-            let data = encode(simulation.save(), &resolved, &last);
-            write_restart(&folder.restart(), 0, &data)?;
+            restart::write(&folder.restart(), simulation, &resolved, &last)?;
             (
                 HistoryWriter::create(&folder.history(), columns)?,
                 FrameSeries::resume(&folder.frames(), options, f64::NEG_INFINITY)?,
@@ -193,10 +189,11 @@ impl<'a> Recorder<'a> {
             },
             last,
             resolved,
-            good: simulation.save(),
+            good: (simulation.reference().point_volume.len() <= POINTS_KEPT)
+                .then(|| simulation.save()),
         };
         if is_new {
-            let fields = simulation.particle_fields();
+            let fields = recorder.fields(simulation);
             recorder.row(simulation, &fields)?;
             recorder.frame(simulation, fields)?;
         }
@@ -209,14 +206,16 @@ impl<'a> Recorder<'a> {
         let frame = self.next.frame.is_due(simulation);
         if row || frame {
             let fields = if frame {
-                simulation.particle_fields()
+                self.fields(simulation)
             } else {
-                simulation.fields_for(&self.case.probes)
+                simulation.fields_for(&self.case.probes, &[])
             };
             if row {
                 self.row(simulation, &fields)?;
-                if simulation.step_count() >= self.good.step + STEPS_BETWEEN_SAVES {
-                    self.good = simulation.save();
+                if let Some(good) = &mut self.good
+                    && simulation.step_count() >= good.step + STEPS_BETWEEN_SAVES
+                {
+                    *good = simulation.save();
                 }
             }
             if frame {
@@ -225,35 +224,56 @@ impl<'a> Recorder<'a> {
         }
         // Last: a restart file finds the rows and frames of its own time written.
         if self.next.restart.is_due(simulation) {
-            self.restart(simulation.save())?;
+            self.restart(simulation)?;
         }
         Ok(())
     }
 
     /// Writes the last row and frame, unless they were just written, and the state.
     pub(crate) fn finish(&mut self, simulation: &Simulation) -> Result<(), OutputError> {
-        let fields = simulation.particle_fields();
+        let fields = self.fields(simulation);
         if self.last.time < simulation.time() {
             self.row(simulation, &fields)?;
         }
         self.last_frame(simulation, fields)?;
-        self.restart(simulation.save())?;
+        self.restart(simulation)?;
         Ok(())
     }
 
     /// Writes the state as it is, for a run that is to be continued.
     pub(crate) fn interrupt(&mut self, simulation: &Simulation) -> Result<PathBuf, OutputError> {
-        self.restart(simulation.save())
+        self.restart(simulation)
     }
 
     /// Puts the simulation back to its last good state and writes that.
     pub(crate) fn fail(&mut self, simulation: &mut Simulation) -> Result<PathBuf, OutputError> {
-        if simulation.restore(&self.good).is_ok() {
-            let fields = simulation.particle_fields();
+        let good = match self.good.take() {
+            Some(good) => good,
+            None => {
+                let (data, _) = read_latest_restart(&self.folder.restart())?;
+                match decode(data) {
+                    Some((saved, last, _)) => {
+                        self.last = last;
+                        saved
+                    }
+                    // Not one that this run has written: what there is is better than nothing.
+                    None => return self.restart(simulation),
+                }
+            }
+        };
+        if simulation.restore(&good).is_ok() {
+            let fields = self.fields(simulation);
             self.last_frame(simulation, fields)?;
         }
-        let good = std::mem::replace(&mut self.good, simulation.save());
-        self.restart(good)
+        self.settle()?;
+        let step = good.step;
+        let data = encode(good, &self.resolved, &self.last);
+        write_restart(&self.folder.restart(), step, &data)
+    }
+
+    /// What rows and frames show.
+    fn fields(&self, simulation: &Simulation) -> ParticleFields {
+        simulation.fields_for(&self.case.probes, &self.case.output.fields)
     }
 
     fn last_frame(
@@ -268,13 +288,16 @@ impl<'a> Recorder<'a> {
     }
 
     /// Writes a state, after the rows and frames before it.
-    fn restart(&mut self, saved: Saved) -> Result<PathBuf, OutputError> {
-        // Rows that a power failure takes must not be missing before a state that it leaves.
+    fn restart(&mut self, simulation: &Simulation) -> Result<PathBuf, OutputError> {
+        self.settle()?;
+        let folder = self.folder.restart();
+        restart::write(&folder, simulation, &self.resolved, &self.last)
+    }
+
+    /// Rows that a power failure takes must not be missing before a state that it leaves.
+    fn settle(&mut self) -> Result<(), OutputError> {
         self.history.sync()?;
-        self.writer.wait()?;
-        let step = saved.step;
-        let data = encode(saved, &self.resolved, &self.last);
-        write_restart(&self.folder.restart(), step, &data)
+        self.writer.wait()
     }
 
     fn row(&mut self, simulation: &Simulation, fields: &ParticleFields) -> Result<(), OutputError> {
@@ -357,39 +380,6 @@ impl<'a> Recorder<'a> {
             frame = frame.scalar("body", body);
         }
         self.writer.frame(frame)
-    }
-}
-
-impl OwnedCells {
-    fn of(simulation: &Simulation) -> Self {
-        let (mut quads, mut hexes) = (Vec::new(), Vec::new());
-        for body in &simulation.reference().bodies {
-            let first = body.particles.start;
-            match &body.cells {
-                Cells::Quads(cells) => {
-                    quads.extend(cells.iter().map(|cell| cell.map(|a| a as usize + first)))
-                }
-                Cells::Hexes(cells) => {
-                    hexes.extend(cells.iter().map(|cell| cell.map(|a| a as usize + first)))
-                }
-            }
-            if body.cells.is_empty() {
-                return Self::None;
-            }
-        }
-        if hexes.is_empty() {
-            Self::Quads(quads)
-        } else {
-            Self::Hexahedra(hexes)
-        }
-    }
-
-    pub(crate) fn borrowed(&self) -> Lattice<'_> {
-        match self {
-            Self::None => Lattice::None,
-            Self::Quads(cells) => Lattice::Quads(cells),
-            Self::Hexahedra(cells) => Lattice::Hexahedra(cells),
-        }
     }
 }
 

@@ -1,7 +1,9 @@
 //! A simulation's state as a restart file and back.
 
-use jstsph_output::{RestartArray, RestartData};
-use jstsph_solver::Saved;
+use std::path::{Path, PathBuf};
+
+use jstsph_output::{OutputError, RestartArray, RestartData, RestartPieces, write_restart_pieces};
+use jstsph_solver::{Saved, Simulation};
 use jstsph_tensor::Vec3;
 use serde_json::{Value, json};
 
@@ -14,19 +16,54 @@ pub(crate) struct LastRow {
     pub(crate) impulses: Vec<Vec3>,
 }
 
+/// Time, time step, number of steps of a state and whether it is synchronised.
+type Instant = (f64, f64, u64, bool);
+
+fn header((time, time_step, step, synchronised): Instant, resolved: &str, last: &LastRow) -> Value {
+    let impulses: Vec<[f64; 3]> = last.impulses.iter().map(|v| [v.x, v.y, v.z]).collect();
+    json!({
+        "case": resolved,
+        "time": time,
+        "time_step": time_step,
+        "step": step,
+        "synchronised": synchronised,
+        "last_row_time": last.time,
+        "last_row_impulses": impulses,
+    })
+}
+
+/// Writes the present state, with the contents of [`encode`] but no copy of it in memory.
+pub(crate) fn write(
+    folder: &Path,
+    simulation: &Simulation,
+    resolved: &str,
+    last: &LastRow,
+) -> Result<PathBuf, OutputError> {
+    let step = simulation.step_count();
+    let now = (
+        simulation.time(),
+        simulation.time_step(),
+        step,
+        simulation.is_synchronised(),
+    );
+    let arrays: Vec<RestartPieces<'_>> = simulation
+        .saved_arrays()
+        .into_iter()
+        .map(|mut array| {
+            let (name, items, width) = (std::mem::take(&mut array.name), array.items, array.width);
+            RestartPieces::list(name, items, width, move |range, out| {
+                array.append_to(range, out);
+            })
+        })
+        .collect();
+    write_restart_pieces(folder, step, &header(now, resolved, last), &arrays)
+}
+
 /// A restart file's contents.
 pub(crate) fn encode(saved: Saved, resolved: &str, last: &LastRow) -> RestartData {
-    let impulses: Vec<[f64; 3]> = last.impulses.iter().map(|v| [v.x, v.y, v.z]).collect();
+    let instant = (saved.time, saved.time_step, saved.step, saved.synchronised);
     RestartData {
-        header: json!({
-            "case": resolved,
-            "time": saved.time,
-            "time_step": saved.time_step,
-            "step": saved.step,
-            "synchronised": saved.synchronised,
-            "last_row_time": last.time,
-            "last_row_impulses": impulses,
-        }),
+        header: header(instant, resolved, last),
         arrays: saved
             .arrays
             .into_iter()

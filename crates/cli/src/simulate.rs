@@ -415,7 +415,7 @@ impl Job<'_> {
         wall: f64,
         first_step: u64,
     ) -> Summary {
-        let fields = simulation.particle_fields();
+        let fields = simulation.fields_for(&self.case.probes, &[]);
         let reference = simulation.reference();
         let (particles, points) = (reference.position.len(), reference.point_volume.len());
         let entries: usize = reference
@@ -438,7 +438,7 @@ impl Job<'_> {
         summary.extremes = extremes(simulation, &fields);
         let positions = &simulation.state().position;
         let inverted = reference.bodies.iter().map(|body| {
-            inverted_cells(&body.cells, &positions[body.particles.clone()]).inverted as u64
+            inverted_cells(&body.body.cells, &positions[body.particles.clone()]).inverted as u64
         });
         summary.inverted_cells = inverted.sum();
         summary.probes = probe_values(self.case, simulation, &fields)

@@ -4,9 +4,49 @@ use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, SyncSender, channel, sync_channel};
 use std::thread::JoinHandle;
 
-use jstsph_output::{Frame, FrameSeries, OutputError};
+use jstsph_geometry::Cells;
+use jstsph_output::{Frame, FrameSeries, Lattice, OutputError};
+use jstsph_solver::Simulation;
 
-use crate::recorder::OwnedCells;
+/// Cells of all bodies with indices into the whole simulation.
+pub(crate) enum OwnedCells {
+    None,
+    Quads(Vec<[u32; 4]>),
+    Hexahedra(Vec<[u32; 8]>),
+}
+
+impl OwnedCells {
+    fn of(simulation: &Simulation) -> Self {
+        let (mut quads, mut hexes) = (Vec::new(), Vec::new());
+        for body in &simulation.reference().bodies {
+            let first = body.particles.start as u32;
+            match &body.body.cells {
+                Cells::Quads(cells) => {
+                    quads.extend(cells.iter().map(|cell| cell.map(|a| a + first)))
+                }
+                Cells::Hexes(cells) => {
+                    hexes.extend(cells.iter().map(|cell| cell.map(|a| a + first)))
+                }
+            }
+            if body.body.cells.is_empty() {
+                return Self::None;
+            }
+        }
+        if hexes.is_empty() {
+            Self::Quads(quads)
+        } else {
+            Self::Hexahedra(hexes)
+        }
+    }
+
+    fn borrowed(&self) -> Lattice<'_> {
+        match self {
+            Self::None => Lattice::None,
+            Self::Quads(cells) => Lattice::Quads(cells),
+            Self::Hexahedra(cells) => Lattice::Hexahedra(cells),
+        }
+    }
+}
 
 /// Writes the frames it is given in that order, one at a time. A frame is only accepted when none
 /// waits, so that no more than two are held in memory.

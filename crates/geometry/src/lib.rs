@@ -4,7 +4,7 @@
 //! [`build_body`] fills a [`Shape`] with nodes that lie on its boundary and gives each its
 //! tributary volume, its interpolation weight and, on cubic lattices, the bonds and cells between
 //! nodes. [`select`] and [`face_areas`] find the nodes that boundary conditions and loads act on;
-//! [`neighbours`] and [`neighbours_of`] find what lies within the support of a kernel.
+//! [`neighbours`], [`neighbours_of`] and [`NeighbourSearch`] find what lies within the support of a kernel.
 //!
 //! ```
 //! use jstsph_geometry::{
@@ -67,7 +67,7 @@ pub use error::GeometryError;
 pub use face::{FaceArea, face_areas, face_nodes};
 pub use lattice::{Lattice, Spacing};
 pub use mesh::{SelfIntersection, SurfacePoint, TriangleMesh};
-pub use neighbours::{Csr, neighbours, neighbours_of};
+pub use neighbours::{Csr, NeighbourSearch, neighbours, neighbours_of};
 pub use polygon::Polygon;
 pub use selection::{Selection, select};
 pub use shape::Shape;

@@ -83,17 +83,71 @@ pub fn neighbours_of(queries: &[Vec3], positions: &[Vec3], radius: f64) -> Csr {
     search(queries, positions, radius, |_, _| true)
 }
 
-fn search(
-    queries: &[Vec3],
-    positions: &[Vec3],
-    radius: f64,
-    keep: impl Fn(usize, usize) -> bool,
-) -> Csr {
-    assert!(
-        radius >= 0.0,
-        "search radius is {radius} m, must not be negative"
-    );
-    for (i, x) in positions.iter().chain(queries).enumerate() {
+/// Searches one after another in the same positions, for work that needs no list of all.
+pub struct NeighbourSearch {
+    points: Vec<[f64; 3]>,
+    /// None without positions.
+    tree: Option<ImmutableKdTree<f64, 3>>,
+    squared_radius: f64,
+}
+
+impl NeighbourSearch {
+    /// Prepares searches within `radius` (m) of anything, as in [`neighbours`].
+    ///
+    /// # Panics
+    /// As [`neighbours`].
+    #[must_use]
+    pub fn new(positions: &[Vec3], radius: f64) -> Self {
+        assert!(
+            radius >= 0.0,
+            "search radius is {radius} m, must not be negative"
+        );
+        assert_finite(positions);
+        let points: Vec<[f64; 3]> = positions.iter().map(|x| (*x).into()).collect();
+        // The only failure of an immutable tree is an index that does not fit 32 bits.
+        let tree = (!points.is_empty()).then(|| {
+            ImmutableKdTree::<f64, 3>::new_from_slice(&points).expect("fewer than 2^32 positions")
+        });
+        Self {
+            points,
+            tree,
+            squared_radius: radius * radius * (1.0 + RADIUS_PADDING),
+        }
+    }
+
+    /// Replaces `found` by the positions within the radius of a point, ascending.
+    pub fn near(&self, point: &Vec3, found: &mut Vec<u32>) {
+        found.clear();
+        self.append((*point).into(), |_| true, found);
+    }
+
+    /// Replaces `found` by the positions within the radius of position `index`, without itself,
+    /// ascending.
+    ///
+    /// # Panics
+    /// If there is no such position.
+    pub fn around(&self, index: usize, found: &mut Vec<u32>) {
+        found.clear();
+        self.append(self.points[index], |item| item as usize != index, found);
+    }
+
+    fn append(&self, point: [f64; 3], keep: impl Fn(u32) -> bool, found: &mut Vec<u32>) {
+        let Some(tree) = &self.tree else { return };
+        let start = found.len();
+        tree.query(&point)
+            .within::<SquaredEuclidean<f64>>(self.squared_radius)
+            .unsorted()
+            .visit(|neighbour| {
+                if keep(neighbour.item) {
+                    found.push(neighbour.item);
+                }
+            });
+        found[start..].sort_unstable();
+    }
+}
+
+fn assert_finite(positions: &[Vec3]) {
+    for (i, x) in positions.iter().enumerate() {
         assert!(
             x.iter().all(|c| c.is_finite()),
             "position {i} of a neighbour search is not finite: ({}, {}, {})",
@@ -102,31 +156,24 @@ fn search(
             x.z
         );
     }
+}
+
+fn search(
+    queries: &[Vec3],
+    positions: &[Vec3],
+    radius: f64,
+    keep: impl Fn(usize, usize) -> bool,
+) -> Csr {
+    let search = NeighbourSearch::new(positions, radius);
+    assert_finite(queries);
     let mut csr = Csr {
         offsets: Vec::with_capacity(queries.len() + 1),
         indices: Vec::new(),
     };
     csr.offsets.push(0);
-    if positions.is_empty() {
-        csr.offsets.resize(queries.len() + 1, 0);
-        return csr;
-    }
-    let points: Vec<[f64; 3]> = positions.iter().map(|x| (*x).into()).collect();
-    // The only failure of an immutable tree is an index that does not fit 32 bits.
-    let tree =
-        ImmutableKdTree::<f64, 3>::new_from_slice(&points).expect("fewer than 2^32 positions");
-    let squared_radius = radius * radius * (1.0 + RADIUS_PADDING);
     for (query, x) in queries.iter().enumerate() {
-        let start = csr.indices.len();
-        tree.query(&(*x).into())
-            .within::<SquaredEuclidean<f64>>(squared_radius)
-            .unsorted()
-            .visit(|found| {
-                if keep(query, found.item as usize) {
-                    csr.indices.push(found.item);
-                }
-            });
-        csr.indices[start..].sort_unstable();
+        let keep = |item: u32| keep(query, item as usize);
+        search.append((*x).into(), keep, &mut csr.indices);
         csr.offsets.push(csr.indices.len());
     }
     csr

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::collections::HashSet;
+use std::ops::Range;
 
 use jstsph_tensor::{Mat3, Vec3};
 
@@ -48,9 +49,9 @@ pub enum Lattice<'a> {
     #[default]
     None,
     /// Quadrilaterals, corners in order around the cell.
-    Quads(&'a [[usize; 4]]),
+    Quads(&'a [[u32; 4]]),
     /// Hexahedra: corners around the lower face, then those above them (VTK's order).
-    Hexahedra(&'a [[usize; 8]]),
+    Hexahedra(&'a [[u32; 8]]),
 }
 
 impl<'a> Frame<'a> {
@@ -189,6 +190,16 @@ impl Components for Mat3 {
     }
 }
 
+/// Some of the numbers that [`flatten`] gives.
+pub(crate) fn flatten_range<T: Components>(values: &[T], range: Range<usize>) -> Vec<f64> {
+    let width = T::NAMES.len().max(1);
+    let (first, last) = (range.start / width, range.end.div_ceil(width));
+    let mut flat = flatten(&values[first..last]);
+    flat.truncate(range.end - first * width);
+    flat.drain(..range.start - first * width);
+    flat
+}
+
 /// All components of all particles in writing order.
 pub(crate) fn flatten<T: Components>(values: &[T]) -> Vec<f64> {
     let mut flat = Vec::with_capacity(values.len() * T::NAMES.len().max(1));
@@ -221,12 +232,12 @@ fn check_values<T: Components>(
     Ok(())
 }
 
-fn check_cells<const N: usize>(cells: &[[usize; N]], points: usize) -> Result<(), OutputError> {
+fn check_cells<const N: usize>(cells: &[[u32; N]], points: usize) -> Result<(), OutputError> {
     for (cell, corners) in cells.iter().enumerate() {
-        if let Some(&point) = corners.iter().find(|&&point| point >= points) {
+        if let Some(&point) = corners.iter().find(|&&point| point as usize >= points) {
             return Err(OutputError::CellPoint {
                 cell,
-                point,
+                point: point as usize,
                 points,
             });
         }

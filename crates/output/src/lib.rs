@@ -61,8 +61,8 @@ pub use frames::{Collection, FrameSeries};
 pub use history::{HISTORY_COLUMNS, HistoryColumn, HistoryRow, HistoryWriter};
 pub use record::{Machine, RunRecord};
 pub use restart::{
-    RestartArray, RestartData, RestartProblem, RestartWarning, latest_restart, read_latest_restart,
-    write_restart,
+    RestartArray, RestartData, RestartPieces, RestartProblem, RestartWarning, latest_restart,
+    read_latest_restart, write_restart, write_restart_pieces,
 };
 pub use stored::{StoredCells, StoredFrame, read_vtu};
 pub use summary::{Energies, Extremes, Status, Summary};

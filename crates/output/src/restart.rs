@@ -1,6 +1,8 @@
 //! Restart files: the state of a run, bit for bit, with a checksum.
 
+use std::collections::HashSet;
 use std::io::{self, Write};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use crate::{OutputError, atomic_write};
@@ -36,6 +38,45 @@ impl RestartData {
     /// The array `name`, if there is one.
     pub fn array(&self, name: &str) -> Option<&RestartArray> {
         self.arrays.iter().find(|array| array.name == name)
+    }
+}
+
+/// An array of a restart file that is written piece by piece, without a copy of all its values.
+pub struct RestartPieces<'a> {
+    name: String,
+    shape: Vec<u64>,
+    items: usize,
+    width: usize,
+    append: Box<dyn Fn(Range<usize>, &mut Vec<f64>) + 'a>,
+}
+
+impl<'a> RestartPieces<'a> {
+    /// A list of `items` times `width` values; `append` appends those of a range of items.
+    pub fn list(
+        name: String,
+        items: usize,
+        width: usize,
+        append: impl Fn(Range<usize>, &mut Vec<f64>) + 'a,
+    ) -> Self {
+        Self {
+            name,
+            shape: vec![(items * width) as u64],
+            items,
+            width,
+            append: Box::new(append),
+        }
+    }
+}
+
+impl<'a> From<&'a RestartArray> for RestartPieces<'a> {
+    fn from(array: &'a RestartArray) -> Self {
+        Self {
+            name: array.name.clone(),
+            shape: array.shape.clone(),
+            items: array.values.len(),
+            width: 1,
+            append: Box::new(|range, out| out.extend_from_slice(&array.values[range])),
+        }
     }
 }
 
@@ -88,9 +129,40 @@ pub enum RestartProblem {
 /// # Errors
 /// [`OutputError::RestartShape`], [`OutputError::DuplicateName`], [`OutputError::Io`].
 pub fn write_restart(folder: &Path, step: u64, data: &RestartData) -> Result<PathBuf, OutputError> {
-    let path = folder.join(format!("state-{step:012}.jstsph"));
-    let header = header(&path, data)?;
-    atomic_write(&path, |writer| encode(&header, data, writer))?;
+    let path = path_of(folder, step);
+    check(data)?;
+    let header = encoded(&path, &data.header)?;
+    let arrays: Vec<RestartPieces<'_>> = data.arrays.iter().map(RestartPieces::from).collect();
+    write_arrays(folder, step, &header, &arrays)
+}
+
+/// [`write_restart`] of arrays that are read while they are written.
+///
+/// # Errors
+/// [`OutputError::DuplicateName`], [`OutputError::Json`], [`OutputError::Io`].
+pub fn write_restart_pieces(
+    folder: &Path,
+    step: u64,
+    header: &serde_json::Value,
+    arrays: &[RestartPieces<'_>],
+) -> Result<PathBuf, OutputError> {
+    distinct(arrays.iter().map(|array| &array.name))?;
+    let header = encoded(&path_of(folder, step), header)?;
+    write_arrays(folder, step, &header, arrays)
+}
+
+fn path_of(folder: &Path, step: u64) -> PathBuf {
+    folder.join(format!("state-{step:012}.jstsph"))
+}
+
+fn write_arrays(
+    folder: &Path,
+    step: u64,
+    header: &[u8],
+    arrays: &[RestartPieces<'_>],
+) -> Result<PathBuf, OutputError> {
+    let path = path_of(folder, step);
+    atomic_write(&path, |writer| encode(header, arrays, writer))?;
     let states = states(folder)?;
     let kept = states.iter().filter(|(s, _)| *s <= step).take(KEPT);
     let kept: Vec<u64> = kept.map(|(s, _)| *s).collect();
@@ -153,14 +225,10 @@ fn states(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputError> {
     Ok(states)
 }
 
-/// The header, after checking that the arrays can be read back.
-fn header(path: &Path, data: &RestartData) -> Result<Vec<u8>, OutputError> {
-    for (index, array) in data.arrays.iter().enumerate() {
-        if data.arrays[..index].iter().any(|a| a.name == array.name) {
-            return Err(OutputError::DuplicateName {
-                name: array.name.clone(),
-            });
-        }
+/// Checks that the arrays can be read back.
+fn check(data: &RestartData) -> Result<(), OutputError> {
+    distinct(data.arrays.iter().map(|array| &array.name))?;
+    for array in &data.arrays {
         if product(&array.shape) != Some(array.values.len() as u64) {
             return Err(OutputError::RestartShape {
                 name: array.name.clone(),
@@ -169,14 +237,28 @@ fn header(path: &Path, data: &RestartData) -> Result<Vec<u8>, OutputError> {
             });
         }
     }
-    serde_json::to_vec(&data.header).map_err(|source| OutputError::Json {
+    Ok(())
+}
+
+fn distinct<'a>(names: impl Iterator<Item = &'a String>) -> Result<(), OutputError> {
+    let mut known = HashSet::new();
+    for name in names {
+        if !known.insert(name) {
+            return Err(OutputError::DuplicateName { name: name.clone() });
+        }
+    }
+    Ok(())
+}
+
+fn encoded(path: &Path, header: &serde_json::Value) -> Result<Vec<u8>, OutputError> {
+    serde_json::to_vec(header).map_err(|source| OutputError::Json {
         path: path.to_path_buf(),
         source,
     })
 }
 
 /// Writes the file piece by piece: the state of a large run is not held in memory once more.
-fn encode(header: &[u8], data: &RestartData, writer: &mut dyn Write) -> io::Result<()> {
+fn encode(header: &[u8], arrays: &[RestartPieces<'_>], writer: &mut dyn Write) -> io::Result<()> {
     let mut writer = Hashing {
         writer,
         hasher: blake3::Hasher::new(),
@@ -185,16 +267,19 @@ fn encode(header: &[u8], data: &RestartData, writer: &mut dyn Write) -> io::Resu
     writer.write_all(&VERSION.to_le_bytes())?;
     writer.length(header.len())?;
     writer.write_all(header)?;
-    writer.length(data.arrays.len())?;
-    for array in &data.arrays {
+    writer.length(arrays.len())?;
+    let (mut values, mut piece) = (Vec::new(), Vec::new());
+    for array in arrays {
         writer.length(array.name.len())?;
         writer.write_all(array.name.as_bytes())?;
         writer.length(array.shape.len())?;
         for extent in &array.shape {
             writer.write_all(&extent.to_le_bytes())?;
         }
-        let mut piece = Vec::with_capacity(8 * PIECE.min(array.values.len()));
-        for values in array.values.chunks(PIECE) {
+        let step = PIECE / array.width.max(1);
+        for start in (0..array.items).step_by(step) {
+            values.clear();
+            (array.append)(start..array.items.min(start + step), &mut values);
             piece.clear();
             piece.extend(values.iter().flat_map(|value| value.to_le_bytes()));
             writer.write_all(&piece)?;
@@ -204,7 +289,7 @@ fn encode(header: &[u8], data: &RestartData, writer: &mut dyn Write) -> io::Resu
     writer.writer.write_all(checksum.as_bytes())
 }
 
-/// Values that are written at once.
+/// Values that are written at once, at most.
 const PIECE: usize = 1 << 14;
 
 /// Writes, and sums up what was written.
@@ -316,181 +401,4 @@ impl<'a> Reader<'a> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn bytes_of(data: &RestartData) -> Vec<u8> {
-        let mut bytes = Vec::new();
-        let header = header(Path::new("a"), data).unwrap();
-        encode(&header, data, &mut bytes).unwrap();
-        bytes
-    }
-    use serde_json::json;
-
-    fn sample() -> RestartData {
-        RestartData {
-            header: json!({ "time": 0.1 + 0.2, "dt": 2.2250738585072e-310, "step": 12 }),
-            arrays: vec![
-                RestartArray {
-                    name: "momentum".to_owned(),
-                    shape: vec![2, 3],
-                    values: vec![
-                        -0.0,
-                        5e-324,
-                        f64::MAX,
-                        f64::NAN,
-                        f64::NEG_INFINITY,
-                        1.0 / 3.0,
-                    ],
-                },
-                RestartArray {
-                    name: "empty".to_owned(),
-                    shape: vec![0, 3],
-                    values: vec![],
-                },
-            ],
-        }
-    }
-
-    fn assert_same_bits(a: &RestartData, b: &RestartData) {
-        assert_eq!(a.header, b.header);
-        assert_eq!(a.arrays.len(), b.arrays.len());
-        for (a, b) in a.arrays.iter().zip(&b.arrays) {
-            assert_eq!((&a.name, &a.shape), (&b.name, &b.shape));
-            let bits = |v: &[f64]| v.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
-            assert_eq!(bits(&a.values), bits(&b.values));
-        }
-    }
-
-    fn numbered(step: u64) -> RestartData {
-        RestartData {
-            header: json!(step),
-            arrays: vec![],
-        }
-    }
-
-    fn steps(folder: &Path) -> Vec<u64> {
-        states(folder).unwrap().iter().map(|(s, _)| *s).collect()
-    }
-
-    #[test]
-    fn every_bit_comes_back() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = write_restart(folder.path(), 12, &sample()).unwrap();
-        assert!(path.ends_with("state-000000000012.jstsph"));
-        let (data, warnings) = read_latest_restart(folder.path()).unwrap();
-        assert_same_bits(&data, &sample());
-        assert!(warnings.is_empty());
-        assert_eq!(data.array("momentum").map(|a| a.values.len()), Some(6));
-    }
-
-    #[test]
-    fn every_flipped_bit_and_every_truncation_is_noticed() {
-        let bytes = bytes_of(&sample());
-        assert_same_bits(&decode(&bytes).unwrap(), &sample());
-        for at in 0..bytes.len() {
-            for bit in 0..8 {
-                let mut flipped = bytes.clone();
-                flipped[at] ^= 1 << bit;
-                assert!(decode(&flipped).is_err(), "byte {at}, bit {bit}");
-            }
-        }
-        for length in 0..bytes.len() {
-            assert!(decode(&bytes[..length]).is_err(), "length {length}");
-        }
-        let mut longer = bytes.clone();
-        longer.push(0);
-        assert!(decode(&longer).is_err());
-    }
-
-    #[test]
-    fn nonsense_with_a_right_checksum_is_refused_without_panic_or_huge_memory() {
-        let bytes = bytes_of(&sample());
-        let content = &bytes[..bytes.len() - CHECKSUM];
-        // Overwrite each aligned and unaligned word of the content by a huge number.
-        for at in MAGIC.len()..content.len() - 8 {
-            let mut changed = content.to_vec();
-            changed[at..at + 8].copy_from_slice(&u64::MAX.to_le_bytes());
-            let checksum = blake3::hash(&changed);
-            changed.extend(checksum.as_bytes());
-            // Values may become others, which a checksum cannot know; lengths may not.
-            let _ = decode(&changed);
-        }
-        let mut newer = content.to_vec();
-        newer[8] = 2;
-        let checksum = blake3::hash(&newer);
-        newer.extend(checksum.as_bytes());
-        assert_eq!(decode(&newer), Err(RestartProblem::Version { found: 2 }));
-    }
-
-    #[test]
-    fn damaged_and_foreign_files_are_passed_over_with_a_warning() {
-        let folder = tempfile::tempdir().unwrap();
-        write_restart(folder.path(), 5, &numbered(5)).unwrap();
-        let last = write_restart(folder.path(), 6, &numbered(6)).unwrap();
-        let bytes = std::fs::read(&last).unwrap();
-        std::fs::write(&last, &bytes[..bytes.len() - 3]).unwrap();
-        std::fs::write(folder.path().join("state-8.jstsph"), "").unwrap();
-        let foreign = folder.path().join("state-7.jstsph");
-        std::fs::write(&foreign, "my notes").unwrap();
-        std::fs::write(folder.path().join("notes.txt"), "ignored").unwrap();
-
-        let (data, warnings) = read_latest_restart(folder.path()).unwrap();
-        assert_eq!(data.header, json!(5));
-        let latest = latest_restart(folder.path()).unwrap();
-        assert!(latest.ends_with("state-000000000005.jstsph"));
-        let problems: Vec<_> = warnings.iter().map(|w| w.problem.clone()).collect();
-        let (foreign, damaged) = (RestartProblem::Foreign, RestartProblem::Damaged);
-        assert_eq!(problems, [foreign.clone(), foreign, damaged]);
-        assert!(
-            warnings[1]
-                .to_string()
-                .ends_with("state-7.jstsph is not a restart file")
-        );
-
-        std::fs::remove_file(folder.path().join("state-000000000005.jstsph")).unwrap();
-        assert_eq!(latest_restart(folder.path()), None);
-        let text = read_latest_restart(folder.path()).unwrap_err().to_string();
-        assert!(
-            text.contains("not a restart file") && text.contains("checksum"),
-            "{text}"
-        );
-    }
-
-    #[test]
-    fn the_two_latest_are_kept_and_an_abandoned_future_is_not() {
-        let folder = tempfile::tempdir().unwrap();
-        for step in [10, 20, 30, 100] {
-            write_restart(folder.path(), step, &numbered(step)).unwrap();
-        }
-        assert_eq!(steps(folder.path()), [100, 30]);
-        // A run continued from step 30 because 100 was damaged.
-        write_restart(folder.path(), 40, &numbered(40)).unwrap();
-        assert_eq!(steps(folder.path()), [40, 30]);
-    }
-
-    #[test]
-    fn shapes_and_names_are_checked() {
-        let folder = tempfile::tempdir().unwrap();
-        let array = RestartArray {
-            name: "a".to_owned(),
-            shape: vec![2, 2],
-            values: vec![1.0; 3],
-        };
-        let mut data = RestartData {
-            header: json!(null),
-            arrays: vec![array],
-        };
-        assert!(matches!(
-            write_restart(folder.path(), 0, &data),
-            Err(OutputError::RestartShape { values: 3, .. })
-        ));
-        data.arrays[0].shape = vec![3];
-        data.arrays.push(data.arrays[0].clone());
-        assert!(matches!(
-            write_restart(folder.path(), 0, &data),
-            Err(OutputError::DuplicateName { .. })
-        ));
-        assert!(steps(folder.path()).is_empty());
-    }
-}
+mod tests;

@@ -438,14 +438,15 @@ mod tests {
     #[test]
     fn quadrilaterals_and_fields_are_found_by_name() {
         let sample = Sample::new();
-        let quads = [[0, 1, 3, 2], [4, 5, 7, 6]];
+        let quads = [[0_u32, 1, 3, 2], [4, 5, 7, 6]];
         let options = FrameOptions {
             cells: CellKind::Lattice,
             ..FrameOptions::default()
         };
         let frame = sample.frame().lattice(Lattice::Quads(&quads));
         let read = parse(&written(&frame, options)).unwrap();
-        assert_eq!(read.cells, StoredCells::Quads(quads.to_vec()));
+        let expected = quads.map(|cell| cell.map(|point| point as usize));
+        assert_eq!(read.cells, StoredCells::Quads(expected.to_vec()));
         assert_eq!(read.scalar("pressure & <more>"), Some(&sample.pressure[..]));
         assert_eq!(read.tensor("cauchy_stress"), Some(&sample.stress[..]));
         assert_eq!(read.scalar("cauchy_stress"), None);

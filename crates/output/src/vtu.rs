@@ -2,12 +2,13 @@
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
+use std::ops::Range;
 use std::path::Path;
 
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
-use crate::frame::{Components, Frame, Lattice, flatten};
+use crate::frame::{Components, Frame, Lattice, flatten_range};
 use crate::{OutputError, atomic_write};
 
 /// Bytes per compressed block: large enough that the block table costs nothing, small enough that
@@ -149,7 +150,7 @@ impl Elements {
     /// it looks for always comes before those that it has changed, and it takes the first.
     fn encode(frame: &Frame, cells: &CellArrays, encoder: &mut Encoder) -> io::Result<Self> {
         let cells = [
-            encoder.array("UInt8", "types", &[], &cells.types)?,
+            encoder.bytes("types", &cells.types)?,
             encoder.integers("offsets", &cells.offsets)?,
             encoder.integers("connectivity", &cells.connectivity)?,
         ];
@@ -188,7 +189,8 @@ impl CellArrays {
         const HEXAHEDRON: u8 = 12;
         match (kind, frame.lattice) {
             (CellKind::Vertices, _) => {
-                let vertices: Vec<[usize; 1]> = (0..frame.positions.len()).map(|a| [a]).collect();
+                let vertices: Vec<[u32; 1]> =
+                    (0..frame.positions.len()).map(|a| [a as u32]).collect();
                 Ok(Self::of(&vertices, VERTEX))
             }
             (CellKind::Lattice, Lattice::Quads(cells)) => Ok(Self::of(cells, QUAD)),
@@ -197,9 +199,13 @@ impl CellArrays {
         }
     }
 
-    fn of<const N: usize>(cells: &[[usize; N]], cell_type: u8) -> Self {
+    fn of<const N: usize>(cells: &[[u32; N]], cell_type: u8) -> Self {
         Self {
-            connectivity: cells.iter().flatten().map(|&point| point as i64).collect(),
+            connectivity: cells
+                .iter()
+                .flatten()
+                .map(|&point| i64::from(point))
+                .collect(),
             offsets: (1..=cells.len()).map(|cell| (cell * N) as i64).collect(),
             types: vec![cell_type; cells.len()],
         }
@@ -221,35 +227,53 @@ impl Encoder {
     }
 
     fn floats<T: Components>(&mut self, name: &str, values: &[T]) -> io::Result<String> {
-        let flat = flatten(values).into_iter();
-        let (kind, bytes): (_, Vec<u8>) = match self.options.precision {
-            Precision::F32 => (
-                "Float32",
-                flat.flat_map(|v| (v as f32).to_le_bytes()).collect(),
-            ),
-            Precision::F64 => ("Float64", flat.flat_map(f64::to_le_bytes).collect()),
+        let (kind, size) = match self.options.precision {
+            Precision::F32 => ("Float32", 4),
+            Precision::F64 => ("Float64", 8),
         };
-        self.array(kind, name, T::NAMES, &bytes)
+        let count = values.len() * T::NAMES.len().max(1);
+        let piece = |range: Range<usize>| {
+            let numbers = flatten_range(values, range).into_iter();
+            if size == 4 {
+                numbers.flat_map(|v| (v as f32).to_le_bytes()).collect()
+            } else {
+                numbers.flat_map(f64::to_le_bytes).collect()
+            }
+        };
+        self.array((kind, name, T::NAMES), (count, size), piece)
     }
 
     fn integers(&mut self, name: &str, values: &[i64]) -> io::Result<String> {
-        let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
-        self.array("Int64", name, &[], &bytes)
+        let piece = |range: Range<usize>| {
+            let numbers = values[range].iter();
+            numbers.flat_map(|v| v.to_le_bytes()).collect()
+        };
+        self.array(("Int64", name, &[]), (values.len(), 8), piece)
     }
 
+    fn bytes(&mut self, name: &str, values: &[u8]) -> io::Result<String> {
+        let piece = |range: Range<usize>| values[range].to_vec();
+        self.array(("UInt8", name, &[]), (values.len(), 1), piece)
+    }
+
+    /// Appends `count` numbers of `size` bytes; `piece` gives the bytes of some of them, so that an
+    /// array is never held in memory as a whole beside its values.
     fn array(
         &mut self,
-        kind: &str,
-        name: &str,
-        components: &[&str],
-        bytes: &[u8],
+        (kind, name, components): (&str, &str, &[&str]),
+        (count, size): (usize, usize),
+        piece: impl Fn(Range<usize>) -> Vec<u8>,
     ) -> io::Result<String> {
         let offset = self.appended.len();
+        let step = BLOCK / size;
+        let blocks = (0..count)
+            .step_by(step)
+            .map(|start| piece(start..count.min(start + step)));
         if self.options.compression {
-            self.append_compressed(bytes)?;
+            self.append_compressed(count * size, blocks)?;
         } else {
-            self.append_number(bytes.len());
-            self.appended.extend_from_slice(bytes);
+            self.append_number(count * size);
+            blocks.for_each(|block| self.appended.extend(block));
         }
         let mut element = format!(
             "        <DataArray type=\"{kind}\" Name=\"{}\"",
@@ -267,18 +291,21 @@ impl Encoder {
     }
 
     /// Block table (count, size, size of a last partial block, compressed sizes), then the blocks.
-    fn append_compressed(&mut self, bytes: &[u8]) -> io::Result<()> {
-        let blocks = bytes
-            .chunks(BLOCK)
+    fn append_compressed(
+        &mut self,
+        bytes: usize,
+        blocks: impl Iterator<Item = Vec<u8>>,
+    ) -> io::Result<()> {
+        let blocks = blocks
             .map(|block| {
                 let mut zlib = ZlibEncoder::new(Vec::new(), Compression::fast());
-                zlib.write_all(block)?;
+                zlib.write_all(&block)?;
                 zlib.finish()
             })
             .collect::<io::Result<Vec<_>>>()?;
         self.append_number(blocks.len());
         self.append_number(BLOCK);
-        self.append_number(bytes.len() % BLOCK);
+        self.append_number(bytes % BLOCK);
         for block in &blocks {
             self.append_number(block.len());
         }

@@ -72,7 +72,7 @@ fn model(
             name: "body".into(),
             initial_temperature: vec![jstsph_material::ROOM_TEMPERATURE; body.positions.len()],
             initial_velocity: vec![velocity; body.positions.len()],
-            body,
+            body: body.into(),
             material,
             body_force: None,
         }],

@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             name: "bar".into(),
             initial_temperature: vec![jstsph_material::ROOM_TEMPERATURE; body.positions.len()],
             initial_velocity: vec![Vec3::new(0.0, 0.0, -227.0); body.positions.len()],
-            body,
+            body: body.into(),
             material: copper.spec.clone(),
             body_force: None,
         }],

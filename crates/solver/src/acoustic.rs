@@ -8,20 +8,16 @@ use crate::model::{Quadrature, Scheme};
 use crate::parallel;
 use crate::reference::{BodyReference, Reference};
 use crate::simulation::Simulation;
-use crate::state::State;
+use crate::state::{State, Workspace};
 
 use lanczos::Tridiagonal;
 
 mod lanczos;
 
-/// Buffers of [`Frequency::largest`], as long as the largest body needs; allocated once.
+/// Buffers of [`Frequency::largest`], as long as the largest body needs; allocated once. Those of the
+/// points, which are larger, are borrowed from the workspace between two steps.
 #[derive(Clone, Debug)]
 pub(crate) struct Frequency {
-    /// A particle field with a fourth number, zero, for vector loads.
-    padded: Vec<[f64; 4]>,
-    /// Gradient, then stress times volume, at the points.
-    tensor: Vec<Mat3>,
-    dilation: Vec<f64>,
     particle_dilation: Vec<f64>,
     vector: Vec<Vec3>,
     previous: Vec<Vec3>,
@@ -71,11 +67,7 @@ impl Frequency {
     pub(crate) fn new(reference: &Reference) -> Self {
         let most = |of: fn(&BodyReference) -> usize| reference.bodies.iter().map(of).max();
         let particles = most(|body| body.particles.len()).unwrap_or(0);
-        let points = most(|body| body.points.len()).unwrap_or(0);
         Self {
-            padded: vec![[0.0; 4]; particles],
-            tensor: vec![Mat3::zeros(); points],
-            dilation: vec![0.0; points],
             particle_dilation: vec![0.0; particles],
             vector: vec![Vec3::zeros(); particles],
             previous: vec![Vec3::zeros(); particles],
@@ -91,10 +83,13 @@ impl Frequency {
     ///
     /// with the isotropic elasticity of the undeformed material, by a few Lanczos steps from a vector
     /// without structure: within a per cent, from below. With `state` that of the deformed body, else
-    /// F = 1; `without_fine` leaves out what makes sub-steps. Stresses themselves (of the order of the flow stress over the moduli) and the softening by
-    /// plastic flow are left out; the latter only lowers frequencies.
+    /// F = 1; `without_fine` leaves out what makes sub-steps. Stresses themselves (of the order of the
+    /// flow stress over the moduli) and the softening by plastic flow are left out; the latter only lowers
+    /// frequencies. Overwrites the momenta with a fourth number, the velocity gradient and the volume
+    /// change of the workspace.
     pub(crate) fn largest(
         &mut self,
+        work: &mut Workspace,
         reference: &Reference,
         body: &BodyReference,
         scheme: &Scheme,
@@ -122,7 +117,7 @@ impl Frequency {
         parallel::for_each(&mut self.vector[..count], |_, v| *v /= size);
         let mut matrix = Tridiagonal::default();
         while !matrix.is_full() {
-            self.apply(&elasticity);
+            self.apply(work, &elasticity);
             let (vector, image) = (&self.vector[..count], &mut self.image[..count]);
             let diagonal = weighted(volume, vector, image);
             let (previous, coupling) = (&self.previous[..count], matrix.last_coupling());
@@ -158,21 +153,22 @@ impl Frequency {
     }
 
     /// `image` = A `vector`.
-    fn apply(&mut self, elasticity: &Elasticity<'_>) {
+    fn apply(&mut self, work: &mut Workspace, elasticity: &Elasticity<'_>) {
         let body = elasticity.body;
         let (particles, points) = (body.particles.len(), body.points.len());
         let vector = &self.vector[..particles];
-        let padded = &mut self.padded[..particles];
+        let padded = &mut work.padded_momentum[..particles];
         parallel::fill(padded, |a| [vector[a].x, vector[a].y, vector[a].z, 0.0]);
         let padded = &*padded;
-        let tensor = &mut self.tensor[..points];
+        // Gradient, then stress times volume.
+        let tensor = &mut work.velocity_gradient[..points];
         parallel::for_each_run(tensor, |offset, tensor| {
             body.gradient.scaled_gradients(offset, padded, 1.0, tensor);
         });
         let shear = 2.0 * body.shear_modulus;
         let bulk =
             body.density * body.wave_speed * body.wave_speed - 4.0 / 3.0 * body.shear_modulus;
-        let dilation = &mut self.dilation[..points];
+        let dilation = &mut work.volume_change[..points];
         parallel::for_each_pair(tensor, dilation, |q, tensor, dilation| {
             let gradient = match elasticity.inverse_transpose(q) {
                 Some(inverse) => *tensor * inverse.transpose(),
@@ -239,11 +235,13 @@ impl Simulation {
     pub fn elastic_cfl_limit(&self) -> f64 {
         let reference = self.reference();
         let mut frequency = Frequency::new(reference);
+        let mut work = Workspace::of_strains(reference);
         reference
             .bodies
             .iter()
             .map(|body| {
-                let largest = frequency.largest(reference, body, self.scheme(), None, None);
+                let largest =
+                    frequency.largest(&mut work, reference, body, self.scheme(), None, None);
                 2.0 / largest * body.wave_speed / body.spacing
             })
             .fold(f64::INFINITY, f64::min)

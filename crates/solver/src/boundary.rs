@@ -49,9 +49,8 @@ pub(crate) fn area_vectors(body: &Body, weights: &[f64], support: &Support) -> V
         if let Some(nodal) = &nodal
             && arm.norm() > far
         {
-            let (indices, weights) = nodal.row(a);
-            for (&c, weight) in indices.iter().zip(weights) {
-                vectors[c as usize] += vector * Vec3::from(*weight).dot(&arm);
+            for (c, weight) in nodal.row(a).entries() {
+                vectors[c] += vector * Vec3::from(*weight).dot(&arm);
             }
         }
     }

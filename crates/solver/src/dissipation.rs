@@ -3,7 +3,7 @@
 
 use jstsph_tensor::Vec3;
 
-use crate::model::{Biharmonic, Jst, Stabilisation};
+use crate::model::{Biharmonic, Jst, Quadrature, Stabilisation};
 use crate::reference::Reference;
 use crate::state::{State, Workspace};
 use crate::{parallel, viscosity};
@@ -124,25 +124,22 @@ fn apply_jst(
 
 fn add_upwind(upwind: f64, reference: &Reference, state: &State, work: &mut Workspace) {
     for body in &reference.bodies {
-        let Some(pairs) = &body.pairs else { continue };
+        let Some(jumps) = &body.jumps else { continue };
         let range = body.particles.clone();
-        let gradient = &work.particle_velocity_gradient[range.clone()];
-        let (momentum, start) = (
-            &state.momentum[range.clone()],
-            &reference.position[range.clone()],
-        );
-        let factor = upwind * body.wave_speed * body.spacing;
-        let half_density = 0.5 * body.density;
-        parallel::for_each(&mut work.dissipation[range], |a, dissipation| {
-            let (indices, weights) = pairs.row(a);
-            let mut sum = Vec3::zeros();
-            for (&b, weight) in indices.iter().zip(weights) {
-                let b = b as usize;
-                let offset = start[b] - start[a];
-                let predicted = (gradient[a] + gradient[b]) * offset * half_density;
-                sum += (momentum[b] - momentum[a] - predicted) * *weight;
-            }
-            *dissipation += sum * factor;
+        let gradient = match reference.quadrature {
+            Quadrature::Particles => &work.velocity_gradient[body.points.clone()],
+            Quadrature::Bonds => &work.particle_velocity_gradient[range.clone()],
+        };
+        let momentum = &state.momentum[range.clone()];
+        // Others have used the buffer since the velocity gradient was computed.
+        let padded = &mut work.padded_momentum[range.clone()];
+        parallel::fill(padded, |a| {
+            [momentum[a].x, momentum[a].y, momentum[a].z, 0.0]
+        });
+        let padded = &*padded;
+        let factors = [upwind * body.wave_speed * body.spacing, body.density];
+        parallel::for_each_run(&mut work.dissipation[range], |offset, dissipation| {
+            jumps.add_jumps(offset, padded, gradient, factors, dissipation);
         });
     }
 }

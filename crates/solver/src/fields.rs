@@ -62,9 +62,19 @@ impl Wanted {
         wave_speed: true,
     };
 
-    /// What the readings of probes take from the fields.
-    fn by(probes: &[Probe]) -> Self {
-        let mut wanted = Self::default();
+    /// What the readings of probes take from the fields, and those of these names.
+    fn by(probes: &[Probe], names: &[&str]) -> Self {
+        let named = |name: &str| names.contains(&name);
+        let mut wanted = Self {
+            velocity: named("velocity"),
+            displacement: named("displacement"),
+            deformation_gradient: named("deformation_gradient"),
+            determinant: named("determinant"),
+            stress: ["cauchy_stress", "von_mises_stress", "pressure"]
+                .into_iter()
+                .any(named),
+            wave_speed: named("wave_speed"),
+        };
         for probe in probes {
             match &probe.kind {
                 ProbeKind::EdgeRadius { .. } => wanted.deformation_gradient = true,
@@ -94,11 +104,12 @@ impl Simulation {
         self.fields(Wanted::ALL)
     }
 
-    /// The fields that these probes read, the plastic strain and the temperature, with the bits of
+    /// The fields that these probes read and those with these names (of the entries of
+    /// [`ParticleFields`]), the plastic strain and the temperature, with the bits of
     /// [`particle_fields`](Self::particle_fields) in a fraction of its time; the others are empty.
     #[must_use]
-    pub fn fields_for(&self, probes: &[Probe]) -> ParticleFields {
-        self.fields(Wanted::by(probes))
+    pub fn fields_for(&self, probes: &[Probe], names: &[&str]) -> ParticleFields {
+        self.fields(Wanted::by(probes, names))
     }
 
     fn fields(&self, wanted: Wanted) -> ParticleFields {
@@ -107,16 +118,14 @@ impl Simulation {
         let mut point_strain = vec![0.0; points];
         stress::equivalent_plastic_strain(reference, &self.materials, &mut point_strain);
 
-        let mut point_stress = Vec::new();
-        if wanted.stress {
-            point_stress = filled(points, Mat3::zeros(), |q| {
-                let f = &state.deformation_gradient[q];
-                // σ = P Fᵀ / det F.
-                let cauchy = work.scaled_stress[q] * f.transpose()
-                    / (reference.point_volume[q] * f.determinant());
-                jstsph_tensor::symmetric_part(&cauchy)
-            });
-        }
+        // Computed for both ends of a bond rather than kept: that of the points is three times as long.
+        let point_stress = |q: usize| {
+            let f = &state.deformation_gradient[q];
+            // σ = P Fᵀ / det F.
+            let cauchy = work.scaled_stress[q] * f.transpose()
+                / (reference.point_volume[q] * f.determinant());
+            jstsph_tensor::symmetric_part(&cauchy)
+        };
         let of_particles = |wanted: bool| if wanted { particles } else { 0 };
         let mut fields = ParticleFields {
             velocity: filled(of_particles(wanted.velocity), Vec3::zeros(), |a| {
@@ -158,7 +167,7 @@ impl Simulation {
             }
             if wanted.stress {
                 parallel::fill(&mut fields.cauchy_stress[range.clone()], |a| {
-                    shares.mean_tensor(a, |q| point_stress[first + q])
+                    shares.mean_tensor(a, |q| point_stress(first + q))
                 });
             }
             if wanted.wave_speed {

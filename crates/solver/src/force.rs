@@ -24,13 +24,11 @@ pub(crate) fn internal(reference: &Reference, work: &mut Workspace) {
     }
 }
 
-/// Averages G and F of the points to the particles, for the pair stabilisations.
-pub(crate) fn average_to_particles(
-    reference: &Reference,
-    state: &State,
-    quadrature: Quadrature,
-    work: &mut Workspace,
-) {
+/// Averages G and F of the bonds to the particles, for the pair stabilisations.
+pub(crate) fn average_to_particles(reference: &Reference, state: &State, work: &mut Workspace) {
+    if reference.quadrature == Quadrature::Particles {
+        return;
+    }
     for body in reference.bodies.iter().filter(|body| body.pairs.is_some()) {
         let (range, points) = (body.particles.clone(), body.points.clone());
         let (velocity, deformation) = (
@@ -39,18 +37,10 @@ pub(crate) fn average_to_particles(
         );
         let averaged_velocity = &mut work.particle_velocity_gradient[range.clone()];
         let averaged_deformation = &mut work.particle_deformation_gradient[range];
-        match quadrature {
-            Quadrature::Particles => {
-                averaged_velocity.copy_from_slice(velocity);
-                averaged_deformation.copy_from_slice(deformation);
-            }
-            Quadrature::Bonds => {
-                parallel::for_each_pair(averaged_velocity, averaged_deformation, |a, g, f| {
-                    *g = body.shares.mean_tensor(a, |q| velocity[q]);
-                    *f = body.shares.mean_tensor(a, |q| deformation[q]);
-                });
-            }
-        }
+        parallel::for_each_pair(averaged_velocity, averaged_deformation, |a, g, f| {
+            *g = body.shares.mean_tensor(a, |q| velocity[q]);
+            *f = body.shares.mean_tensor(a, |q| deformation[q]);
+        });
     }
 }
 
@@ -74,7 +64,10 @@ pub(crate) fn hourglass(
     for body in &reference.bodies {
         let Some(pairs) = &body.pairs else { continue };
         let (range, points) = (body.particles.clone(), body.points.clone());
-        let deformation = &work.particle_deformation_gradient[range.clone()];
+        let deformation = match reference.quadrature {
+            Quadrature::Particles => &state.deformation_gradient[points.clone()],
+            Quadrature::Bonds => &work.particle_deformation_gradient[range.clone()],
+        };
         let (position, start) = (
             &state.position[range.clone()],
             &reference.position[range.clone()],
@@ -84,10 +77,8 @@ pub(crate) fn hourglass(
             &mut work.internal_force[range.clone()],
             &mut work.hourglass_stress[range.clone()],
             |a, force, stress| {
-                let (indices, weights) = pairs.row(a);
                 let (mut sum, mut moment) = (Vec3::zeros(), Mat3::zeros());
-                for (&b, weight) in indices.iter().zip(weights) {
-                    let b = b as usize;
+                for (b, weight) in pairs.row(a).entries() {
                     let offset = start[b] - start[a];
                     let predicted = (deformation[a] + deformation[b]) * offset * 0.5;
                     let residual = (position[b] - position[a] - predicted) * *weight;
@@ -136,10 +127,8 @@ pub(crate) fn hourglass_energy(reference: &Reference, state: &State, coefficient
             * coefficient
             * body.shear_modulus
             * parallel::sum(volume.len(), 0.0, |a| {
-                let (indices, weights) = pairs.row(a);
                 let mut sum = 0.0;
-                for (&b, weight) in indices.iter().zip(weights) {
-                    let b = b as usize;
+                for (b, weight) in pairs.row(a).entries() {
                     let offset = start[b] - start[a];
                     let predicted = (deformation[a] + deformation[b]) * offset * 0.5;
                     sum += weight * (position[b] - position[a] - predicted).norm_squared();
@@ -174,9 +163,14 @@ impl Loads {
         }
     }
 
+    /// Whether nothing pushes.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.tractions.is_empty() && self.body_forces.iter().all(Option::is_none)
+    }
+
     /// ρ b + A t / V of every particle at `time`, N/m³.
     pub(crate) fn evaluate(&self, reference: &Reference, time: f64, external_force: &mut [Vec3]) {
-        if self.tractions.is_empty() && self.body_forces.iter().all(Option::is_none) {
+        if self.is_empty() {
             return;
         }
         external_force.fill(Vec3::zeros());

@@ -9,7 +9,7 @@ use crate::model::Formulation;
 use crate::profile::Phase;
 use crate::reference::Reference;
 use crate::simulation::{Simulation, work_of};
-use crate::state::{Impulse, Ledger, State, Work};
+use crate::state::{Impulse, Ledger, State, Work, or_zero};
 use crate::{SolverError, parallel, strain};
 
 /// Which part of a step a kick spans, which decides how its work is booked.
@@ -122,8 +122,8 @@ impl Simulation {
             |a, p, before, impulse| {
                 *before = *p;
                 *impulse = Impulse {
-                    numerical: work.dissipation[a] * duration,
-                    external: work.external_force[a] * duration,
+                    numerical: or_zero(&work.dissipation, a) * duration,
+                    external: or_zero(&work.external_force, a) * duration,
                     ..Impulse::default()
                 };
                 *p += impulse.numerical + impulse.external - work.internal_force[a] * duration;

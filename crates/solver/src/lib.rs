@@ -25,7 +25,7 @@
 //!         name: "plate".into(),
 //!         initial_temperature: vec![293.15; body.positions.len()],
 //!         initial_velocity: body.positions.iter().map(|x| Vec3::new(100.0 * x.x, 0.0, 0.0)).collect(),
-//!         body,
+//!         body: body.into(),
 //!         material: copper.spec.clone(),
 //!         body_force: None,
 //!     }],
@@ -103,6 +103,6 @@ pub use model::{
 pub use probe::{EdgePart, Field, Probe, ProbeKind, Statistic};
 pub use profile::{Phase, PhaseObserver};
 pub use reference::{BodyReference, Reference, Shares};
-pub use save::Saved;
+pub use save::{Saved, SavedArray};
 pub use simulation::Simulation;
 pub use state::State;

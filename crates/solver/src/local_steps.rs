@@ -9,7 +9,7 @@ use crate::model::Scheme;
 use crate::profile::Phase;
 use crate::reference::Reference;
 use crate::simulation::Simulation;
-use crate::state::Impulse;
+use crate::state::{Impulse, or_zero};
 use crate::{SolverError, force, parallel};
 
 use choice::{Choice, stretch_limits};
@@ -197,7 +197,7 @@ impl LocalSteps {
             |a, p, before, impulse| {
                 *before = *p;
                 *impulse = Impulse {
-                    external: work.external_force[a] * duration.coarse,
+                    external: or_zero(&work.external_force, a) * duration.coarse,
                     ..Impulse::default()
                 };
                 *p += impulse.external - work.internal_force[a] * duration.coarse;

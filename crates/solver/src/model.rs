@@ -44,8 +44,8 @@ pub struct Heat {
 pub struct ModelBody {
     /// Name used in messages and output.
     pub name: String,
-    /// Particles, volumes, bonds.
-    pub body: Body,
+    /// Particles, volumes, bonds; shared, because it is most of a model.
+    pub body: Arc<Body>,
     /// Constitutive model with its parameters.
     pub material: MaterialSpec,
     /// Velocity of every particle at time zero, m/s.

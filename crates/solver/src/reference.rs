@@ -1,9 +1,11 @@
 //! What the reference configuration determines: computed once, never changed.
 
+use std::collections::HashMap;
 use std::ops::Range;
+use std::sync::Arc;
 
-use jstsph_geometry::{Cells, Dimension};
-use jstsph_sph::{Correction, GradientOperator, PairOperator, Support};
+use jstsph_geometry::{Body, Dimension};
+use jstsph_sph::{Correction, GradientOperator, JumpOperator, PairOperator, Support};
 use jstsph_tensor::{Mat3, Vec3};
 
 use crate::SolverError;
@@ -15,14 +17,14 @@ use crate::model::{Laplacian, Model, ModelBody, Quadrature, Scheme, SmoothingRef
 pub struct Reference {
     /// Plane strain or solid.
     pub dimension: Dimension,
+    /// Where strains and stresses live.
+    pub quadrature: Quadrature,
     /// Reference positions X of all particles, m.
     pub position: Vec<Vec3>,
     /// Tributary volumes V_a of all particles, m³ (per metre of thickness in plane strain).
     pub volume: Vec<f64>,
     /// Volumes V_q of all evaluation points, m³.
     pub point_volume: Vec<f64>,
-    /// Reference positions of all evaluation points, m.
-    pub point_position: Vec<Vec3>,
     /// Density of every particle in the inertia, p = ρ v: that of the material times the mass
     /// scaling, kg/m³.
     pub density: Vec<f64>,
@@ -60,14 +62,17 @@ pub struct BodyReference {
     pub correction: Option<Correction>,
     /// Laplacian of the JST dissipation, when it is used.
     pub laplacian: Option<PairOperator>,
-    /// Symmetric pair weights of upwind dissipation and hourglass stiffness, when they are used.
-    pub pairs: Option<PairOperator>,
+    /// Symmetric pair weights of upwind dissipation, hourglass stiffness and viscosity, when they are
+    /// used.
+    pub pairs: Option<Arc<PairOperator>>,
+    /// Jumps of the upwind dissipation, when it is used.
+    pub jumps: Option<JumpOperator>,
     /// Particles whose J a point sees, body indices: the two ends of a bond, or twice the particle.
     pub ends: Vec<[u32; 2]>,
     /// Points that make up a particle, with their shares (adding to one).
     pub shares: Shares,
-    /// Lattice cells, for counting inverted ones and for drawing.
-    pub cells: Cells,
+    /// The body as it was given: lattice cells, bonds.
+    pub body: Arc<Body>,
 }
 
 /// The points that belong to each particle and the share of each, V_q / (ends V_a).
@@ -75,6 +80,9 @@ pub struct BodyReference {
 pub struct Shares {
     offsets: Vec<u32>,
     points: Vec<u32>,
+    /// Where the shares of each particle begin in the list.
+    starts: Vec<u32>,
+    /// Runs of shares; equal ones, as inside a lattice, are there once.
     shares: Vec<f64>,
 }
 
@@ -84,28 +92,49 @@ impl Shares {
         Self {
             offsets: (0..=particles as u32).collect(),
             points: (0..particles as u32).collect(),
-            shares: vec![1.0; particles],
+            starts: vec![0; particles],
+            shares: vec![1.0],
         }
     }
 
     /// Half of every bond to each of its ends.
     fn of_bonds(particles: usize, ends: &[[u32; 2]], bond_volumes: &[f64]) -> Self {
-        let mut lists = vec![Vec::new(); particles];
+        let mut offsets = vec![0u32; particles + 1];
+        for &a in ends.iter().flatten() {
+            offsets[a as usize + 1] += 1;
+        }
+        for a in 0..particles {
+            offsets[a + 1] += offsets[a];
+        }
+        let mut next = offsets.clone();
+        let mut points = vec![0; 2 * ends.len()];
         for (q, pair) in ends.iter().enumerate() {
             for &a in pair {
-                lists[a as usize].push(q as u32);
+                let place = &mut next[a as usize];
+                points[*place as usize] = q as u32;
+                *place += 1;
             }
         }
-        let (mut offsets, mut points, mut shares) = (vec![0u32], Vec::new(), Vec::new());
-        for list in &lists {
+        let (mut starts, mut shares) = (Vec::with_capacity(particles), Vec::new());
+        let mut known: HashMap<Vec<u64>, u32> = HashMap::new();
+        for a in 0..particles {
+            let list = &points[offsets[a] as usize..offsets[a + 1] as usize];
             let total: f64 = list.iter().map(|&q| bond_volumes[q as usize]).sum();
-            points.extend_from_slice(list);
-            shares.extend(list.iter().map(|&q| bond_volumes[q as usize] / total));
-            offsets.push(points.len() as u32);
+            let run: Vec<f64> = list
+                .iter()
+                .map(|&q| bond_volumes[q as usize] / total)
+                .collect();
+            let key = run.iter().map(|share| share.to_bits()).collect();
+            starts.push(*known.entry(key).or_insert_with(|| {
+                let start = shares.len() as u32;
+                shares.extend_from_slice(&run);
+                start
+            }));
         }
         Self {
             offsets,
             points,
+            starts,
             shares,
         }
     }
@@ -115,7 +144,9 @@ impl Shares {
     #[must_use]
     pub fn of(&self, particle: usize) -> (&[u32], &[f64]) {
         let range = self.offsets[particle] as usize..self.offsets[particle + 1] as usize;
-        (&self.points[range.clone()], &self.shares[range])
+        let start = self.starts[particle] as usize;
+        let shares = start..start + range.len();
+        (&self.points[range], &self.shares[shares])
     }
 
     /// Volume-weighted mean of a scalar field of the points.
@@ -156,10 +187,10 @@ impl Reference {
     pub fn new(model: &Model) -> Result<Self, SolverError> {
         let mut reference = Self {
             dimension: model.dimension,
+            quadrature: model.scheme.quadrature,
             position: Vec::new(),
             volume: Vec::new(),
             point_volume: Vec::new(),
-            point_position: Vec::new(),
             density: Vec::new(),
             bodies: Vec::new(),
         };
@@ -188,7 +219,6 @@ impl Reference {
         let (gradient, ends, shares) = match scheme.quadrature {
             Quadrature::Particles => {
                 self.point_volume.extend_from_slice(&body.volumes);
-                self.point_position.extend_from_slice(&body.positions);
                 let ends = (0..particles as u32).map(|a| [a, a]).collect();
                 (at_particles()?, ends, Shares::identity(particles))
             }
@@ -197,7 +227,6 @@ impl Reference {
                     body: input.name.clone(),
                 })?;
                 self.point_volume.extend_from_slice(&bonds.volumes);
-                self.point_position.extend_from_slice(&bonds.midpoints);
                 let gradient =
                     GradientOperator::at_points(&bonds.midpoints, &body.positions, &support)
                         .map_err(failed)?;
@@ -252,7 +281,11 @@ impl Reference {
             || stabilisation.hourglass != 0.0
             || stabilisation.viscosity.is_some())
         .then(symmetric)
-        .transpose()?;
+        .transpose()?
+        .map(Arc::new);
+        let jumps = pairs.as_ref().filter(|_| stabilisation.upwind != 0.0);
+        let jumps =
+            jumps.map(|pairs| JumpOperator::new(Arc::clone(pairs), &body.positions, &pair_support));
 
         let material_density = input.material.density();
         let density = material_density * scheme.inertia_scale;
@@ -275,9 +308,10 @@ impl Reference {
             correction,
             laplacian,
             pairs,
+            jumps,
             ends,
             shares,
-            cells: body.cells.clone(),
+            body: Arc::clone(body),
         });
         Ok(())
     }
@@ -305,6 +339,13 @@ impl Reference {
             &body.area_vectors,
             chosen,
         ) / body.spacing.powi(self.dimension.count() as i32 - 1)
+    }
+
+    /// Reference position of a point of a body, m: of a particle, or in the middle of a bond.
+    pub(crate) fn point_position(&self, body: usize, point: usize) -> Vec3 {
+        let body = &self.bodies[body];
+        let [a, b] = body.ends[point].map(|end| body.body.positions[end as usize]);
+        (a + b) * 0.5
     }
 
     /// The body that owns an evaluation point, and the index within it.

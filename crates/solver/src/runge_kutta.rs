@@ -7,7 +7,7 @@ use crate::constraint::Stage;
 use crate::model::Formulation;
 use crate::profile::Phase;
 use crate::simulation::{Simulation, work_of};
-use crate::state::{Impulse, Ledger, State};
+use crate::state::{Impulse, Ledger, State, or_zero};
 use crate::strain::constrain;
 use crate::{SolverError, parallel, strain};
 
@@ -168,9 +168,11 @@ impl Simulation {
             &mut ledger.impulse,
             |a, x, p, impulse| {
                 *x += *p * (dt / reference.density[a]);
-                impulse.numerical += work.dissipation[a] * (weight * dt);
-                impulse.external += work.external_force[a] * (weight * dt);
-                *p += (work.dissipation[a] + work.external_force[a] - work.internal_force[a]) * dt;
+                let dissipation = or_zero(&work.dissipation, a);
+                let external = or_zero(&work.external_force, a);
+                impulse.numerical += dissipation * (weight * dt);
+                impulse.external += external * (weight * dt);
+                *p += (dissipation + external - work.internal_force[a]) * dt;
             },
         );
         if from_positions {

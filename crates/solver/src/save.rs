@@ -1,5 +1,7 @@
 //! The complete state as named arrays of numbers, for restart files.
 
+use std::ops::Range;
+
 use jstsph_material::{Block, BlockReader, BlockVisitor, History, Material, MaterialBlock};
 use jstsph_tensor::{Mat3, Vec3};
 
@@ -22,37 +24,127 @@ pub struct Saved {
     pub arrays: Vec<(String, Vec<f64>)>,
 }
 
-fn flat_vectors(values: &[Vec3]) -> Vec<f64> {
-    values.iter().flat_map(|v| [v.x, v.y, v.z]).collect()
+/// One array of the state, read piece by piece: a large state is not held in memory once more.
+pub struct SavedArray<'a> {
+    /// Name, unique in a state.
+    pub name: String,
+    /// Particles, points or other items.
+    pub items: usize,
+    /// Numbers of each item.
+    pub width: usize,
+    numbers: Box<dyn Fn(Range<usize>, &mut Vec<f64>) + 'a>,
 }
 
-fn flat_tensors(values: &[Mat3]) -> Vec<f64> {
-    values
-        .iter()
-        .flat_map(|m| m.as_slice().iter().copied())
-        .collect()
-}
-
-fn flat_work(values: &[Work]) -> Vec<f64> {
-    values
-        .iter()
-        .flat_map(|w| [w.numerical, w.external, w.contact, w.friction])
-        .collect()
-}
-
-struct WriteHistory;
-
-impl BlockReader for WriteHistory {
-    type Output = Vec<f64>;
-    fn visit<M: Material>(&mut self, block: &Block<M>) -> Vec<f64> {
-        let columns = M::History::FIELDS.len();
-        let mut flat = vec![0.0; columns * block.committed.len()];
-        if columns > 0 {
-            for (history, row) in block.committed.iter().zip(flat.chunks_mut(columns)) {
-                history.write(row);
-            }
+impl<'a> SavedArray<'a> {
+    fn of<T, const N: usize>(
+        name: &str,
+        items: &'a [T],
+        numbers: impl Fn(&T) -> [f64; N] + 'a,
+    ) -> Self {
+        Self {
+            name: name.to_owned(),
+            items: items.len(),
+            width: N,
+            numbers: Box::new(move |range, out| {
+                out.extend(items[range].iter().flat_map(&numbers));
+            }),
         }
-        flat
+    }
+
+    fn scalars(name: &str, items: &'a [f64]) -> Self {
+        Self::of(name, items, |value| [*value])
+    }
+
+    fn owned(name: &str, values: Vec<f64>) -> Self {
+        Self {
+            name: name.to_owned(),
+            items: values.len(),
+            width: 1,
+            numbers: Box::new(move |range, out| out.extend_from_slice(&values[range])),
+        }
+    }
+
+    fn vectors(name: &str, items: &'a [Vec3]) -> Self {
+        Self::of(name, items, |v| [v.x, v.y, v.z])
+    }
+
+    /// Vectors that are zero when there are none.
+    fn vectors_or_zero(name: &str, items: &'a [Vec3], count: usize) -> Self {
+        if !items.is_empty() {
+            return Self::vectors(name, items);
+        }
+        Self {
+            name: name.to_owned(),
+            items: count,
+            width: 3,
+            numbers: Box::new(|range, out| out.extend(range.flat_map(|_| [0.0; 3]))),
+        }
+    }
+
+    fn tensors(name: &str, items: &'a [Mat3]) -> Self {
+        Self::of(name, items, |m| {
+            let [[a, b, c], [d, e, f], [g, h, i]]: [[f64; 3]; 3] = (*m).into();
+            [a, b, c, d, e, f, g, h, i]
+        })
+    }
+
+    fn work(name: &str, items: &'a [Work]) -> Self {
+        Self::of(name, items, |w| {
+            [w.numerical, w.external, w.contact, w.friction]
+        })
+    }
+
+    fn history(name: String, material: &'a MaterialBlock) -> Self {
+        let (items, width) = material.visit_ref(&mut HistorySize);
+        Self {
+            name,
+            items,
+            width,
+            numbers: Box::new(move |range, out| {
+                material.visit_ref(&mut WriteHistory { range, out });
+            }),
+        }
+    }
+
+    /// Appends the numbers of some items, item by item.
+    ///
+    /// # Panics
+    /// If there are not as many items.
+    pub fn append_to(&self, items: Range<usize>, out: &mut Vec<f64>) {
+        (self.numbers)(items, out);
+    }
+}
+
+impl std::fmt::Debug for SavedArray<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: {} x {}", self.name, self.items, self.width)
+    }
+}
+
+struct HistorySize;
+
+impl BlockReader for HistorySize {
+    /// Points, and numbers of each.
+    type Output = (usize, usize);
+    fn visit<M: Material>(&mut self, block: &Block<M>) -> (usize, usize) {
+        (block.committed.len(), M::History::FIELDS.len())
+    }
+}
+
+struct WriteHistory<'a> {
+    range: Range<usize>,
+    out: &'a mut Vec<f64>,
+}
+
+impl BlockReader for WriteHistory<'_> {
+    type Output = ();
+    fn visit<M: Material>(&mut self, block: &Block<M>) {
+        let columns = M::History::FIELDS.len();
+        for history in &block.committed[self.range.clone()] {
+            let start = self.out.len();
+            self.out.resize(start + columns, 0.0);
+            history.write(&mut self.out[start..]);
+        }
     }
 }
 
@@ -143,110 +235,77 @@ impl Simulation {
     /// The complete state.
     #[must_use]
     pub fn save(&self) -> Saved {
-        let (state, ledger, work) = (&self.state, &self.ledger, &self.work);
-        let mut arrays = vec![
-            ("position".to_owned(), flat_vectors(&state.position)),
-            ("momentum".to_owned(), flat_vectors(&state.momentum)),
-            ("jacobian".to_owned(), state.jacobian.clone()),
-            ("temperature".to_owned(), state.temperature.clone()),
-            (
-                "deformation_gradient".to_owned(),
-                flat_tensors(&state.deformation_gradient),
-            ),
-            ("cofactor".to_owned(), flat_tensors(&state.cofactor)),
-            // Re-evaluated stresses differ in the last bit where a point is on its yield surface.
-            (
-                "scaled_stress".to_owned(),
-                flat_tensors(&work.scaled_stress),
-            ),
-            (
-                "volumetric_stress".to_owned(),
-                work.volumetric_stress.clone(),
-            ),
-            ("plastic_work".to_owned(), work.plastic_work.clone()),
-            // The next step does not need them, the energies (4.1) of the last one do.
-            (
-                "internal_force".to_owned(),
-                flat_vectors(&work.internal_force),
-            ),
-            ("dissipation".to_owned(), flat_vectors(&work.dissipation)),
-            (
-                "jacobian_dissipation".to_owned(),
-                work.jacobian_dissipation.clone(),
-            ),
-            (
-                "momentum_before".to_owned(),
-                flat_vectors(&ledger.momentum_before),
-            ),
-            ("work".to_owned(), flat_work(&ledger.work)),
-            ("last_work".to_owned(), flat_work(&ledger.last_work)),
-            (
-                "plastic_dissipation".to_owned(),
-                ledger.plastic_dissipation.clone(),
-            ),
-            (
-                "condition_impulse".to_owned(),
-                flat_vectors(&ledger.condition_impulse),
-            ),
-            (
-                "obstacle_displacement".to_owned(),
-                flat_vectors(&self.obstacles.displacement),
-            ),
-            (
-                "contact_impulse".to_owned(),
-                ledger
-                    .contact
-                    .iter()
-                    .flat_map(|s| [s.impulse.x, s.impulse.y, s.impulse.z])
-                    .collect(),
-            ),
-            (
-                "contact_given".to_owned(),
-                flat_vectors(
-                    &ledger
-                        .contact
-                        .iter()
-                        .flat_map(|s| [s.given.normal, s.given.friction])
-                        .collect::<Vec<_>>(),
-                ),
-            ),
-            ("friction_heat".to_owned(), ledger.friction_heat.clone()),
-            (
-                "contact_corrections".to_owned(),
-                ledger
-                    .contact
-                    .iter()
-                    .map(|s| f64::from(s.corrections))
-                    .collect(),
-            ),
-            (
-                "scalars".to_owned(),
-                vec![self.initial_energy, self.first_dt, self.smallest_stretch],
-            ),
-        ];
-        if let Some(limit) = &self.acoustic {
-            arrays.push(("acoustic_limit".to_owned(), limit.saved().to_vec()));
-        }
-        if let Some(local) = &self.local {
-            arrays.push(("local_steps".to_owned(), local.saved()));
-        }
-        if let Some(heat) = &self.heat {
-            arrays.push(("heat_generated".to_owned(), heat.generated.clone()));
-            arrays.push(("heat_supplied".to_owned(), heat.supplied.clone()));
-        }
-        for (k, material) in self.materials.iter().enumerate() {
-            arrays.push((
-                format!("history_{k}"),
-                material.visit_ref(&mut WriteHistory),
-            ));
-        }
+        let arrays = self.saved_arrays().into_iter().map(|array| {
+            let mut values = Vec::with_capacity(array.items * array.width);
+            array.append_to(0..array.items, &mut values);
+            (array.name, values)
+        });
         Saved {
             time: self.time,
             time_step: self.dt,
             step: self.step,
             synchronised: self.synchronised,
-            arrays,
+            arrays: arrays.collect(),
         }
+    }
+
+    /// The arrays of [`save`](Self::save) without a copy of them.
+    #[must_use]
+    pub fn saved_arrays(&self) -> Vec<SavedArray<'_>> {
+        let (state, ledger, work) = (&self.state, &self.ledger, &self.work);
+        let particles = state.position.len();
+        let scalars = [self.initial_energy, self.first_dt, self.smallest_stretch];
+        let mut arrays = vec![
+            SavedArray::vectors("position", &state.position),
+            SavedArray::vectors("momentum", &state.momentum),
+            SavedArray::scalars("jacobian", &state.jacobian),
+            SavedArray::scalars("temperature", &state.temperature),
+            SavedArray::tensors("deformation_gradient", &state.deformation_gradient),
+            SavedArray::tensors("cofactor", &state.cofactor),
+            // Re-evaluated stresses differ in the last bit where a point is on its yield surface.
+            SavedArray::tensors("scaled_stress", &work.scaled_stress),
+            SavedArray::scalars("volumetric_stress", &work.volumetric_stress),
+            SavedArray::scalars("plastic_work", &work.plastic_work),
+            // The next step does not need them, the energies (4.1) of the last one do.
+            SavedArray::vectors("internal_force", &work.internal_force),
+            SavedArray::vectors_or_zero("dissipation", &work.dissipation, particles),
+            SavedArray::scalars("jacobian_dissipation", &work.jacobian_dissipation),
+            SavedArray::vectors("momentum_before", &ledger.momentum_before),
+            SavedArray::work("work", &ledger.work),
+            SavedArray::work("last_work", &ledger.last_work),
+            SavedArray::scalars("plastic_dissipation", &ledger.plastic_dissipation),
+            SavedArray::vectors("condition_impulse", &ledger.condition_impulse),
+            SavedArray::vectors("obstacle_displacement", &self.obstacles.displacement),
+            SavedArray::of("contact_impulse", &ledger.contact, |slot| {
+                slot.impulse.into()
+            }),
+            SavedArray::of("contact_given", &ledger.contact, |slot| {
+                let (normal, friction) = (slot.given.normal, slot.given.friction);
+                [
+                    normal.x, normal.y, normal.z, friction.x, friction.y, friction.z,
+                ]
+            }),
+            SavedArray::scalars("friction_heat", &ledger.friction_heat),
+            SavedArray::of("contact_corrections", &ledger.contact, |slot| {
+                [f64::from(slot.corrections)]
+            }),
+            SavedArray::of("scalars", &[()], move |()| scalars),
+        ];
+        if let Some(limit) = &self.acoustic {
+            let saved = limit.saved();
+            arrays.push(SavedArray::of("acoustic_limit", &[()], move |()| saved));
+        }
+        if let Some(local) = &self.local {
+            arrays.push(SavedArray::owned("local_steps", local.saved()));
+        }
+        if let Some(heat) = &self.heat {
+            arrays.push(SavedArray::scalars("heat_generated", &heat.generated));
+            arrays.push(SavedArray::scalars("heat_supplied", &heat.supplied));
+        }
+        for (k, material) in self.materials.iter().enumerate() {
+            arrays.push(SavedArray::history(format!("history_{k}"), material));
+        }
+        arrays
     }
 
     /// Puts a saved state back; the run that follows has the same bits as one never interrupted.
@@ -267,7 +326,11 @@ impl Simulation {
         arrays.scalars("volumetric_stress", &mut work.volumetric_stress)?;
         arrays.scalars("plastic_work", &mut work.plastic_work)?;
         arrays.vectors("internal_force", &mut work.internal_force)?;
-        arrays.vectors("dissipation", &mut work.dissipation)?;
+        // Not kept by schemes without dissipation.
+        let stored = arrays.get("dissipation", 3 * state.position.len())?;
+        for (v, c) in work.dissipation.iter_mut().zip(stored.chunks_exact(3)) {
+            *v = Vec3::new(c[0], c[1], c[2]);
+        }
         arrays.scalars("jacobian_dissipation", &mut work.jacobian_dissipation)?;
         arrays.vectors("momentum_before", &mut ledger.momentum_before)?;
         arrays.work("work", &mut ledger.work)?;

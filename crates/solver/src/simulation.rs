@@ -1,7 +1,7 @@
 //! A running simulation and the named pieces that the integrators are made of.
 
 use jstsph_material::MaterialBlock;
-use jstsph_tensor::Vec3;
+use jstsph_tensor::{Mat3, Vec3};
 
 use crate::constraint::{Obstacles, Prescribed, Stage};
 use crate::error::Place;
@@ -102,7 +102,15 @@ impl Simulation {
             contact: obstacles.new_slots(particles),
             condition_impulse: vec![Vec3::zeros(); prescribed.len()],
         };
+        let loads = Loads::new(&model);
         let mut work = Workspace::new(&reference);
+        if !loads.is_empty() {
+            work.external_force = vec![Vec3::zeros(); particles];
+        }
+        if model.scheme.stabilisation.hourglass != 0.0 {
+            work.hourglass_stress = vec![Mat3::zeros(); particles];
+            work.hourglass_point_stress = vec![Mat3::zeros(); points];
+        }
         if model.scheme.formulation == Formulation::Displacement {
             work.displacement = vec![Vec3::zeros(); particles];
         }
@@ -114,7 +122,7 @@ impl Simulation {
             0
         };
         let mut simulation = Self {
-            loads: Loads::new(&model),
+            loads,
             eulerian: (model.scheme.formulation == Formulation::EulerianKernel)
                 .then(|| Box::new(CurrentKernels::new(&model, &reference))),
             heat: HeatProcess::new(&model, &reference, &materials)?,
@@ -257,12 +265,7 @@ impl Simulation {
         }
         self.finished(Phase::Force);
         if stabilisation.upwind != 0.0 || stabilisation.hourglass != 0.0 {
-            force::average_to_particles(
-                &self.reference,
-                &self.state,
-                self.scheme.quadrature,
-                &mut self.work,
-            );
+            force::average_to_particles(&self.reference, &self.state, &mut self.work);
         }
         if stabilisation.hourglass != 0.0 {
             force::hourglass(
@@ -287,9 +290,12 @@ impl Simulation {
         if self.scheme.projection {
             let state = &self.state;
             let lever = |a: usize| lever(state, a);
-            projection::conserve(&self.reference, &lever, &mut self.work.internal_force);
+            let work = &mut self.work;
             if dissipates {
-                projection::conserve(&self.reference, &lever, &mut self.work.dissipation);
+                let fields = [&mut work.internal_force[..], &mut work.dissipation[..]];
+                projection::conserve(&self.reference, &lever, fields);
+            } else {
+                projection::conserve(&self.reference, &lever, [&mut work.internal_force]);
             }
         }
         self.loads
@@ -404,7 +410,7 @@ impl Simulation {
 
     pub(crate) fn not_finite(&self, point: usize) -> SolverError {
         let (body, index) = self.reference.owner_of_point(point);
-        let position = self.reference.point_position[point].into();
+        let position = self.reference.point_position(body, index).into();
         SolverError::NotFinite {
             quantity: "deformation gradient",
             place: self.place(body, index, position),

@@ -4,6 +4,7 @@ use jstsph_contact::{CachedGap, Exchange};
 use jstsph_material::ROOM_TEMPERATURE;
 use jstsph_tensor::{Mat3, Vec3};
 
+use crate::model::Quadrature;
 use crate::reference::Reference;
 
 /// The unknowns of the mixed scheme: x, p and J of the particles, F and H of the evaluation points.
@@ -51,7 +52,7 @@ impl State {
 }
 
 /// Buffers of one evaluation of the right-hand side; allocated once.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Workspace {
     /// The momenta with a fourth number, zero, for vector loads.
     pub(crate) padded_momentum: Vec<[f64; 4]>,
@@ -67,7 +68,7 @@ pub(crate) struct Workspace {
     pub(crate) plastic_work: Vec<f64>,
     /// T per unit reference volume, N/m³, hourglass stiffness included, after the projection.
     pub(crate) internal_force: Vec<Vec3>,
-    /// D(p) of JST and upwind together, N/m³, after the projection.
+    /// D(p) of JST and upwind together, N/m³, after the projection; empty without them.
     pub(crate) dissipation: Vec<Vec3>,
     /// D(J), 1/s.
     pub(crate) jacobian_dissipation: Vec<f64>,
@@ -75,45 +76,66 @@ pub(crate) struct Workspace {
     pub(crate) viscous_heating: Vec<f64>,
     /// x − X, for the formulation that takes F from it; empty otherwise.
     pub(crate) displacement: Vec<Vec3>,
-    /// Tractions and body forces per unit reference volume, N/m³.
+    /// Tractions and body forces per unit reference volume, N/m³; empty without them.
     pub(crate) external_force: Vec<Vec3>,
-    /// First differences (Laplacians) of p and J.
+    /// First differences (Laplacians) of p and J; that of p is empty without JST.
     pub(crate) laplacian: Vec<Vec3>,
     pub(crate) jacobian_laplacian: Vec<f64>,
-    /// G and F averaged to the particles, for the pair stabilisations with bonds.
+    /// G and F averaged to the particles, for the pair stabilisations with bonds; else empty.
     pub(crate) particle_velocity_gradient: Vec<Mat3>,
     pub(crate) particle_deformation_gradient: Vec<Mat3>,
-    /// Stress of the hourglass stiffness: P at the particles, V P at the points.
+    /// Stress of the hourglass stiffness: P at the particles, V P at the points; empty without it.
     pub(crate) hourglass_stress: Vec<Mat3>,
     pub(crate) hourglass_point_stress: Vec<Mat3>,
 }
 
 impl Workspace {
-    pub(crate) fn new(reference: &Reference) -> Self {
+    /// What the frequency of the bodies needs.
+    pub(crate) fn of_strains(reference: &Reference) -> Self {
         let (particles, points) = (reference.position.len(), reference.point_volume.len());
-        let pairs = reference.bodies.iter().any(|body| body.pairs.is_some());
-        let averaged = if pairs { particles } else { 0 };
         Self {
             padded_momentum: vec![[0.0; 4]; particles],
             velocity_gradient: vec![Mat3::zeros(); points],
             volume_change: vec![0.0; points],
+            ..Self::default()
+        }
+    }
+
+    pub(crate) fn new(reference: &Reference) -> Self {
+        let (particles, points) = (reference.position.len(), reference.point_volume.len());
+        let pairs = reference.bodies.iter().any(|body| body.pairs.is_some());
+        let averaged = if pairs { particles } else { 0 };
+        let of_bonds = match reference.quadrature {
+            Quadrature::Particles => 0,
+            Quadrature::Bonds => averaged,
+        };
+        let laplacian = reference.bodies.iter().any(|body| body.laplacian.is_some());
+        let differences = if laplacian { particles } else { 0 };
+        Self {
             scaled_stress: vec![Mat3::zeros(); points],
             volumetric_stress: vec![0.0; particles],
             plastic_work: vec![0.0; points],
             internal_force: vec![Vec3::zeros(); particles],
-            dissipation: vec![Vec3::zeros(); particles],
+            dissipation: vec![Vec3::zeros(); averaged.max(differences)],
             jacobian_dissipation: vec![0.0; particles],
             viscous_heating: vec![0.0; averaged],
             displacement: Vec::new(),
-            external_force: vec![Vec3::zeros(); particles],
-            laplacian: vec![Vec3::zeros(); particles],
+            external_force: Vec::new(),
+            laplacian: vec![Vec3::zeros(); differences],
             jacobian_laplacian: vec![0.0; particles],
-            particle_velocity_gradient: vec![Mat3::zeros(); averaged],
-            particle_deformation_gradient: vec![Mat3::zeros(); averaged],
-            hourglass_stress: vec![Mat3::zeros(); averaged],
-            hourglass_point_stress: vec![Mat3::zeros(); if pairs { points } else { 0 }],
+            particle_velocity_gradient: vec![Mat3::zeros(); of_bonds],
+            particle_deformation_gradient: vec![Mat3::zeros(); of_bonds],
+            hourglass_stress: Vec::new(),
+            hourglass_point_stress: Vec::new(),
+            ..Self::of_strains(reference)
         }
     }
+}
+
+/// An entry of a field that is empty where nothing acts.
+#[inline]
+pub(crate) fn or_zero(field: &[Vec3], a: usize) -> Vec3 {
+    field.get(a).copied().unwrap_or_else(Vec3::zeros)
 }
 
 /// Momentum changes of one particle within a step, per unit reference volume, by cause.

@@ -93,7 +93,7 @@ pub(crate) fn body(name: &str, nodes: [usize; 3], material: MaterialSpec) -> Mod
         name: name.into(),
         initial_temperature: vec![jstsph_material::ROOM_TEMPERATURE; body.positions.len()],
         initial_velocity: vec![Vec3::zeros(); body.positions.len()],
-        body,
+        body: body.into(),
         material,
         body_force: None,
     }

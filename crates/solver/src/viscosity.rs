@@ -46,10 +46,8 @@ pub(crate) fn add(
             &mut work.dissipation[range.clone()],
             &mut work.viscous_heating[range],
             |a, dissipation, heating| {
-                let (indices, weights) = pairs.row(a);
                 let (mut force, mut power) = (Vec3::zeros(), 0.0);
-                for (&b, weight) in indices.iter().zip(weights) {
-                    let b = b as usize;
+                for (b, weight) in pairs.row(a).entries() {
                     let offset = position[a] - position[b];
                     let velocity = (momentum[a] - momentum[b]) * inverse_density;
                     let approach = velocity.dot(&offset);

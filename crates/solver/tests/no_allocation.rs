@@ -34,7 +34,7 @@ fn model(quadrature: Quadrature, integrator: Integrator, formulation: Formulatio
             name: "plate".into(),
             initial_temperature: vec![jstsph_material::ROOM_TEMPERATURE; body.positions.len()],
             initial_velocity: vec![Vec3::new(20.0, -150.0, 0.0); body.positions.len()],
-            body,
+            body: body.into(),
             material: library()[0].spec.clone(),
             body_force: Some([0.0, -9.81, 0.0].map(Signal::Constant)),
         }],

@@ -1,13 +1,13 @@
 //! The corrected gradient operator B and its transpose.
 
-use jstsph_geometry::{Csr, neighbours, neighbours_of};
+use jstsph_geometry::NeighbourSearch;
 use jstsph_tensor::{Mat3, Vec3};
 
-use crate::rows::Rows;
+use crate::rows::{Row, Rows};
 use crate::{Kernel, SphError};
 
 mod conforming;
-mod passes;
+pub(crate) mod passes;
 
 pub use conforming::Correction;
 
@@ -90,11 +90,12 @@ impl GradientOperator {
         support: &Support,
     ) -> Result<Self, SphError> {
         assert_eq!(positions.len(), weights.len(), "one weight per particle");
-        let lists = neighbours(positions, support.radius());
+        let search = NeighbourSearch::new(positions, support.radius());
+        let mut found = Vec::new();
         Self::build(positions.len(), positions.len(), support, |a, entries| {
             let mut moment = Mat3::zeros();
-            let mut found = 0;
-            for &b in lists.row(a) {
+            search.around(a, &mut found);
+            for &b in &found {
                 let offset = positions[b as usize] - positions[a];
                 // ∇W_ab with respect to X_a points from a towards b times −W'/r.
                 let gradient =
@@ -102,11 +103,11 @@ impl GradientOperator {
                 if gradient == Vec3::zeros() {
                     continue;
                 }
-                found += 1;
                 moment += gradient * offset.transpose();
                 entries.push((b, gradient.into()));
             }
-            let correction = invert_moment(moment, support, "particle", a, &positions[a], found)?;
+            let correction =
+                invert_moment(moment, support, "particle", a, &positions[a], entries.len())?;
             let mut own = Vec3::zeros();
             for (_, weight) in entries.iter_mut() {
                 let corrected = correction * Vec3::from(*weight);
@@ -135,12 +136,14 @@ impl GradientOperator {
         positions: &[Vec3],
         support: &Support,
     ) -> Result<Self, SphError> {
-        let lists = neighbours_of(points, positions, support.radius());
+        let search = NeighbourSearch::new(positions, support.radius());
+        let mut found = Vec::new();
         Self::build(points.len(), positions.len(), support, |q, entries| {
             let (mut value_sum, mut gradient_sum) = (0.0, Vec3::zeros());
             let mut value_offset = Vec3::zeros();
             let mut moment = Mat3::zeros();
-            for &c in lists.row(q) {
+            search.near(&points[q], &mut found);
+            for &c in &found {
                 let offset = positions[c as usize] - points[q];
                 let r = offset.norm();
                 let value = support.value(r);
@@ -232,15 +235,21 @@ impl GradientOperator {
         self.rows.stored_weights() + self.columns.stored_weights()
     }
 
+    /// Bytes of memory it holds.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.rows.bytes() + self.columns.bytes()
+    }
+
     /// Particles and weights B_qc of one evaluation point.
     #[must_use]
-    pub fn row(&self, point: usize) -> (&[u32], &[[f64; 3]]) {
+    pub fn row(&self, point: usize) -> Row<'_, [f64; 3]> {
         self.rows.row(point)
     }
 
     /// Points and weights B_qc of one particle.
     #[must_use]
-    pub fn column(&self, particle: usize) -> (&[u32], &[[f64; 3]]) {
+    pub fn column(&self, particle: usize) -> Row<'_, [f64; 3]> {
         self.columns.row(particle)
     }
 
@@ -249,11 +258,11 @@ impl GradientOperator {
     #[inline]
     #[must_use]
     pub fn gradient_at(&self, point: usize, field: &[Vec3]) -> Mat3 {
-        let (indices, weights) = self.rows.row(point);
+        let row = self.rows.row(point);
         if self.plane {
             let (mut g11, mut g21, mut g12, mut g22) = (0.0, 0.0, 0.0, 0.0);
-            for (&c, w) in indices.iter().zip(weights) {
-                let f = &field[c as usize];
+            for (c, w) in row.entries() {
+                let f = &field[c];
                 g11 += f.x * w[0];
                 g21 += f.y * w[0];
                 g12 += f.x * w[1];
@@ -262,8 +271,8 @@ impl GradientOperator {
             return Mat3::new(g11, g12, 0.0, g21, g22, 0.0, 0.0, 0.0, 0.0);
         }
         let mut g = [0.0; 9];
-        for (&c, w) in indices.iter().zip(weights) {
-            let f = &field[c as usize];
+        for (c, w) in row.entries() {
+            let f = &field[c];
             for j in 0..3 {
                 g[3 * j] += f.x * w[j];
                 g[3 * j + 1] += f.y * w[j];
@@ -277,17 +286,17 @@ impl GradientOperator {
     #[inline]
     #[must_use]
     pub fn divergence_at(&self, particle: usize, tensors: &[Mat3]) -> Vec3 {
-        let (indices, weights) = self.columns.row(particle);
+        let column = self.columns.row(particle);
         let (mut x, mut y, mut z) = (0.0, 0.0, 0.0);
         if self.plane {
-            for (&q, w) in indices.iter().zip(weights) {
-                let s = &tensors[q as usize];
+            for (q, w) in column.entries() {
+                let s = &tensors[q];
                 x += s.m11 * w[0] + s.m12 * w[1];
                 y += s.m21 * w[0] + s.m22 * w[1];
             }
         } else {
-            for (&q, w) in indices.iter().zip(weights) {
-                let s = &tensors[q as usize];
+            for (q, w) in column.entries() {
+                let s = &tensors[q];
                 x += s.m11 * w[0] + s.m12 * w[1] + s.m13 * w[2];
                 y += s.m21 * w[0] + s.m22 * w[1] + s.m23 * w[2];
                 z += s.m31 * w[0] + s.m32 * w[1] + s.m33 * w[2];
@@ -300,13 +309,9 @@ impl GradientOperator {
     #[inline]
     #[must_use]
     pub fn scalar_gradient_at(&self, point: usize, field: &[f64]) -> Vec3 {
-        let (indices, weights) = self.rows.row(point);
-        indices
-            .iter()
-            .zip(weights)
-            .fold(Vec3::zeros(), |sum, (&c, w)| {
-                sum + Vec3::from(*w) * field[c as usize]
-            })
+        let row = self.rows.row(point);
+        row.entries()
+            .fold(Vec3::zeros(), |sum, (c, w)| sum + Vec3::from(*w) * field[c])
     }
 
     /// Σ_q v_q · B_qc: with v = V q, a flux times the volume of its point, minus the weak divergence
@@ -314,10 +319,10 @@ impl GradientOperator {
     #[inline]
     #[must_use]
     pub fn scalar_divergence_at(&self, particle: usize, vectors: &[Vec3]) -> f64 {
-        let (indices, weights) = self.columns.row(particle);
-        indices.iter().zip(weights).fold(0.0, |sum, (&q, w)| {
-            sum + vectors[q as usize].dot(&Vec3::from(*w))
-        })
+        let column = self.columns.row(particle);
+        column
+            .entries()
+            .fold(0.0, |sum, (q, w)| sum + vectors[q].dot(&Vec3::from(*w)))
     }
 
     /// Σ_q V_q B_qc for every particle: zero for inner nodes and the outward area vector for
@@ -327,13 +332,10 @@ impl GradientOperator {
     pub fn boundary_vectors(&self, point_volumes: &[f64]) -> Vec<Vec3> {
         (0..self.particles())
             .map(|c| {
-                let (indices, weights) = self.columns.row(c);
-                indices
-                    .iter()
-                    .zip(weights)
-                    .fold(Vec3::zeros(), |sum, (&q, w)| {
-                        sum + Vec3::from(*w) * point_volumes[q as usize]
-                    })
+                let column = self.columns.row(c);
+                column.entries().fold(Vec3::zeros(), |sum, (q, w)| {
+                    sum + Vec3::from(*w) * point_volumes[q]
+                })
             })
             .collect()
     }
@@ -370,11 +372,6 @@ fn invert_moment(
             limit: CONDITION_LIMIT,
         }),
     }
-}
-
-/// Rows of particle neighbours without the particle itself, for pair sums.
-pub(crate) fn pair_lists(positions: &[Vec3], support: &Support) -> Csr {
-    neighbours(positions, support.radius())
 }
 
 #[cfg(test)]

@@ -24,6 +24,7 @@
 
 mod gradient;
 mod interpolation;
+mod jumps;
 mod kernel;
 mod pairs;
 mod rows;
@@ -32,8 +33,10 @@ mod testing;
 
 pub use gradient::{Correction, GradientOperator, Support};
 pub use interpolation::interpolate;
+pub use jumps::JumpOperator;
 pub use kernel::Kernel;
 pub use pairs::PairOperator;
+pub use rows::Row;
 
 /// Why an operator could not be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

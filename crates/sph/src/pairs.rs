@@ -2,8 +2,10 @@
 
 use jstsph_tensor::Vec3;
 
-use crate::gradient::{Support, pair_lists};
-use crate::rows::Rows;
+use jstsph_geometry::NeighbourSearch;
+
+use crate::gradient::Support;
+use crate::rows::{Row, Rows};
 use crate::{GradientOperator, SphError};
 
 /// Bounds of the clamped quadratic scaling: outside (0, 2) it is set to one, because it is
@@ -29,10 +31,12 @@ impl PairOperator {
         volumes: &[f64],
         support: &Support,
     ) -> Result<Self, SphError> {
-        let lists = pair_lists(positions, support);
+        let search = NeighbourSearch::new(positions, support.radius());
+        let mut found = Vec::new();
         let scale = laplacian_scale(support);
         Self::checked(Rows::build(positions.len(), scale, |a, entries| {
-            for &b in lists.row(a) {
+            search.around(a, &mut found);
+            for &b in &found {
                 let r = (positions[b as usize] - positions[a]).norm();
                 let weight = -2.0 * volumes[b as usize] * support.derivative_over_radius(r);
                 if weight > 0.0 {
@@ -63,23 +67,21 @@ impl PairOperator {
         let symmetric = Self::symmetric(positions, volumes, support)?;
         let scale = laplacian_scale(support);
         Self::checked(Rows::build(positions.len(), scale, |a, entries| {
-            let (indices, weights) = symmetric.rows.row(a);
-            let offset = |b: u32| positions[b as usize] - positions[a];
-            let first: Vec3 = indices
-                .iter()
-                .zip(weights)
-                .map(|(&b, w)| offset(b) * *w)
-                .sum();
-            let (points, corrections) = gradient.row(a);
+            let row = symmetric.rows.row(a);
+            let offset = |b: usize| positions[b] - positions[a];
+            let first: Vec3 = row.entries().map(|(b, w)| offset(b) * *w).sum();
+            let mut plain = row.entries().peekable();
             let mut quadratic = 0.0;
-            for (&b, correction) in points.iter().zip(corrections) {
-                if b as usize == a {
+            for (b, correction) in gradient.row(a).entries() {
+                if b == a {
                     continue;
                 }
-                let plain = indices.binary_search(&b).map_or(0.0, |k| weights[k]);
+                while plain.next_if(|(other, _)| *other < b).is_some() {}
+                let plain = plain.next_if(|(other, _)| *other == b);
+                let plain = plain.map_or(0.0, |(_, weight)| *weight);
                 let weight = plain - first.dot(&Vec3::from(*correction));
                 quadratic += weight * offset(b).norm_squared();
-                entries.push((b, weight));
+                entries.push((b as u32, weight));
             }
             // Laplacian of |X − X_a|² is 2 d.
             let scaling = 2.0 * support.dimension as f64 / quadratic;
@@ -114,7 +116,7 @@ impl PairOperator {
     /// Neighbours b and weights ℓ_ab of a particle.
     #[inline]
     #[must_use]
-    pub fn row(&self, particle: usize) -> (&[u32], &[f64]) {
+    pub fn row(&self, particle: usize) -> Row<'_, f64> {
         self.rows.row(particle)
     }
 
@@ -123,13 +125,9 @@ impl PairOperator {
     #[must_use]
     pub fn difference_at(&self, particle: usize, field: &[Vec3]) -> Vec3 {
         let own = &field[particle];
-        let (indices, weights) = self.rows.row(particle);
-        indices
-            .iter()
-            .zip(weights)
-            .fold(Vec3::zeros(), |sum, (&b, w)| {
-                sum + (field[b as usize] - own) * *w
-            })
+        let row = self.rows.row(particle);
+        row.entries()
+            .fold(Vec3::zeros(), |sum, (b, w)| sum + (field[b] - own) * *w)
     }
 
     /// Σ_b ℓ_ab (f_b − f_a) of a scalar field.
@@ -137,18 +135,24 @@ impl PairOperator {
     #[must_use]
     pub fn scalar_difference_at(&self, particle: usize, field: &[f64]) -> f64 {
         let own = field[particle];
-        let (indices, weights) = self.rows.row(particle);
-        indices
-            .iter()
-            .zip(weights)
-            .fold(0.0, |sum, (&b, w)| sum + (field[b as usize] - own) * w)
+        let row = self.rows.row(particle);
+        row.entries()
+            .fold(0.0, |sum, (b, w)| sum + (field[b] - own) * w)
     }
 
     /// Upper bound (Gershgorin) of the spectral radius, 1/m²: twice the largest row sum.
     #[must_use]
     pub fn spectral_bound(&self) -> f64 {
         (0..self.particles())
-            .map(|a| 2.0 * self.rows.row(a).1.iter().map(|w| w.abs()).sum::<f64>())
+            .map(|a| {
+                2.0 * self
+                    .rows
+                    .row(a)
+                    .weights
+                    .iter()
+                    .map(|w| w.abs())
+                    .sum::<f64>()
+            })
             .fold(0.0, f64::max)
     }
 }

@@ -69,8 +69,9 @@ fn frequencies_follow_the_deformation() {
         let simulation = Simulation::new(model([6, 5, 4], elastic(), scheme)).unwrap();
         let reference = simulation.reference();
         let mut frequency = Frequency::new(reference);
+        let mut work = Workspace::new(reference);
         let mut of = |state: Option<&State>| {
-            frequency.largest(reference, &reference.bodies[0], &scheme, state, None)
+            frequency.largest(&mut work, reference, &reference.bodies[0], &scheme, state, None)
         };
         let undeformed = of(None);
         let turn = Mat3::new(0.6, -0.8, 0.0, 0.8, 0.6, 0.0, 0.0, 0.0, 1.0);

@@ -51,7 +51,7 @@ fn probes_read_the_same_bits_from_the_fields_made_for_them() {
             }
             let all = simulation.particle_fields();
             for probe in &probes {
-                let made = simulation.fields_for(std::slice::from_ref(probe));
+                let made = simulation.fields_for(std::slice::from_ref(probe), &[]);
                 let (here, there) = (
                     simulation.probe(probe, &made),
                     simulation.probe(probe, &all),

@@ -110,14 +110,14 @@ impl Conduction {
                 let operator = operator.as_ref().unwrap_or(&body.gradient);
                 let norm = |w: &[f64; 3]| Vec3::from(*w).norm();
                 let sums: Vec<f64> = (0..operator.points())
-                    .map(|q| operator.row(q).1.iter().map(norm).sum())
+                    .map(|q| operator.row(q).weights.iter().map(norm).sum())
                     .collect();
                 (0..operator.particles())
                     .map(|c| {
-                        let (points, weights) = operator.column(c);
-                        let row = points.iter().zip(weights).fold(0.0, |sum, (&q, w)| {
-                            sum + volume[q as usize] * norm(w) * sums[q as usize]
-                        });
+                        let row = operator
+                            .column(c)
+                            .entries()
+                            .fold(0.0, |sum, (q, w)| sum + volume[q] * norm(w) * sums[q]);
                         row / particle_volume[c]
                     })
                     .fold(0.0, f64::max)
@@ -133,10 +133,8 @@ impl Conduction {
             Self::Pairs(pairs) => {
                 let temperature = of.temperature;
                 parallel::fill(out, |a| {
-                    let (indices, weights) = pairs.row(a);
                     let own = of.conductivity.at(temperature[a]);
-                    indices.iter().zip(weights).fold(0.0, |sum, (&b, w)| {
-                        let b = b as usize;
+                    pairs.row(a).entries().fold(0.0, |sum, (b, w)| {
                         let other = of.conductivity.at(temperature[b]);
                         let mean = if own + other > 0.0 {
                             2.0 * own * other / (own + other)

@@ -6,6 +6,7 @@ use crate::acoustic::Frequency;
 use crate::model::Scheme;
 use crate::reference::Reference;
 use crate::simulation::Simulation;
+use crate::state::Workspace;
 use crate::time_step::{StableStep, point_time, stable_step_of_part};
 
 /// Steps after which the groups are chosen again at the latest.
@@ -52,6 +53,8 @@ struct Outcome {
 #[derive(Clone, Debug)]
 pub(super) struct Choice {
     frequency: Frequency,
+    /// What the frequency needs of a workspace: that of the simulation is in use while this one is asked.
+    work: Workspace,
     largest_ratio: u32,
     /// Δx λ_min / c of every point, s.
     point_time: Vec<f64>,
@@ -76,6 +79,7 @@ impl Choice {
     pub(super) fn new(scheme: &Scheme, reference: &Reference) -> Self {
         Self {
             frequency: Frequency::new(reference),
+            work: Workspace::of_strains(reference),
             largest_ratio: scheme.substeps,
             point_time: vec![0.0; reference.point_volume.len()],
             trial: reference.bodies.iter().map(Groups::new).collect(),
@@ -174,7 +178,7 @@ impl Choice {
             let groups = without_fine.map(|groups| &groups[index]);
             let largest = self
                 .frequency
-                .largest(reference, body, scheme, Some(state), groups);
+                .largest(&mut self.work, reference, body, scheme, Some(state), groups);
             limit = limit.min(2.0 / largest);
         }
         limit

@@ -141,8 +141,8 @@ impl Groups {
     fn complete(&mut self, body: &BodyReference) {
         self.moving.chosen.fill(false);
         for q in self.fine.runs(0..body.points.len(), true).flatten() {
-            let (particles, _) = body.gradient.row(q);
-            particles.iter().for_each(|a| self.moving.add(*a as usize));
+            let row = body.gradient.row(q);
+            row.indices().for_each(|a| self.moving.add(a));
         }
         for (a, fine) in self.fine_jacobian.iter_mut().enumerate() {
             let (points, _) = body.shares.of(a);

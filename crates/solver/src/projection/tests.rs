@@ -64,7 +64,7 @@ fn projected_forces_have_neither_resultant_nor_torque() {
         let reference = reference(nodes);
         for (name, arms) in levers(&reference) {
             let mut field = random_field(&reference, 1);
-            conserve(&reference, &|a| arms[a], &mut field);
+            conserve(&reference, &|a| arms[a], [&mut field]);
             let (force, torque) = imbalance(&reference, |a| arms[a], &field);
             assert!(
                 force < 1e-14 && torque < 1e-14,
@@ -91,10 +91,10 @@ fn change_is_the_least_possible() {
     for (name, arms) in levers(&reference) {
         let before = random_field(&reference, 2);
         let mut after = before.clone();
-        conserve(&reference, &|a| arms[a], &mut after);
+        conserve(&reference, &|a| arms[a], [&mut after]);
         let change: Vec<Vec3> = before.iter().zip(&after).map(|(b, a)| a - b).collect();
         let mut admissible = random_field(&reference, 3);
-        conserve(&reference, &|a| arms[a], &mut admissible);
+        conserve(&reference, &|a| arms[a], [&mut admissible]);
         let size = (product(&change, &change) * product(&admissible, &admissible)).sqrt();
         let inner = product(&change, &admissible);
         assert!(inner.abs() < 1e-13 * size, "{name}: {inner:e} of {size:e}");
@@ -110,9 +110,9 @@ fn balanced_forces_are_left_alone() {
     let reference = reference([5, 4, 3]);
     let lever = |a: usize| reference.position[a];
     let mut field = random_field(&reference, 4);
-    conserve(&reference, &lever, &mut field);
+    conserve(&reference, &lever, [&mut field]);
     let once = field.clone();
-    conserve(&reference, &lever, &mut field);
+    conserve(&reference, &lever, [&mut field]);
     let largest = once
         .iter()
         .zip(&field)
@@ -130,7 +130,7 @@ fn rigid_accelerations_are_removed_entirely() {
         .iter()
         .map(|x| push + spin.cross(x))
         .collect();
-    conserve(&reference, &|a| reference.position[a], &mut field);
+    conserve(&reference, &|a| reference.position[a], [&mut field]);
     assert!(field.iter().all(|f| f.norm() < 1e-13 * push.norm()));
 }
 
@@ -146,12 +146,12 @@ fn every_body_is_balanced_by_itself() {
     let mut field = random_field(&reference, 5);
     let first = reference.bodies[0].particles.clone();
     // The second body starts balanced: a force on the first must not reach it.
-    conserve(&reference, &|a| reference.position[a], &mut field);
+    conserve(&reference, &|a| reference.position[a], [&mut field]);
     let second: Vec<Vec3> = field[first.end..].to_vec();
     field[first.clone()]
         .iter_mut()
         .for_each(|f| *f += Vec3::new(1e6, 0.0, 0.0));
-    conserve(&reference, &|a| reference.position[a], &mut field);
+    conserve(&reference, &|a| reference.position[a], [&mut field]);
     for (after, before) in field[first.end..].iter().zip(&second) {
         assert!((after - before).norm() < 1e-7);
     }

@@ -6,7 +6,7 @@ use crate::acoustic::Frequency;
 use crate::model::{Scheme, StepLimit};
 use crate::reference::Reference;
 use crate::simulation::Simulation;
-use crate::state::State;
+use crate::state::{State, Workspace};
 
 /// Steps after which the frequency of the deformed bodies is computed again at the latest: it costs
 /// about as much as eight steps.
@@ -47,6 +47,7 @@ impl AcousticLimit {
     /// How much longer than `time`, that of [`stable_step`], the step may be.
     fn gain(
         &mut self,
+        work: &mut Workspace,
         reference: &Reference,
         scheme: &Scheme,
         state: &State,
@@ -55,10 +56,9 @@ impl AcousticLimit {
         let age = step - self.step;
         let changed = (time - self.time).abs() > CHANGE * self.time;
         if self.gain == 0.0 || age >= LATEST || (changed && age >= EARLIEST) {
+            let frequency = &mut self.frequency;
             let limit = reference.bodies.iter().map(|body| {
-                2.0 / self
-                    .frequency
-                    .largest(reference, body, scheme, Some(state), None)
+                2.0 / frequency.largest(work, reference, body, scheme, Some(state), None)
             });
             self.gain = limit.fold(f64::INFINITY, f64::min) / time;
             self.time = time;
@@ -90,7 +90,8 @@ impl Simulation {
         let time = stable_step(&self.reference, &self.state).time;
         let gain = self.acoustic.clone().map_or(1.0, |mut limit| {
             let now = (time, self.step);
-            limit.gain(&self.reference, &self.scheme, &self.state, now)
+            let work = &mut Workspace::of_strains(&self.reference);
+            limit.gain(work, &self.reference, &self.scheme, &self.state, now)
         });
         self.scheme.cfl * gain * time
     }
@@ -105,7 +106,8 @@ impl Simulation {
         let mut dt = self.scheme.cfl * stable.time;
         if let Some(limit) = &mut self.acoustic {
             let now = (stable.time, self.step);
-            dt *= limit.gain(&self.reference, &self.scheme, &self.state, now);
+            let work = &mut self.work;
+            dt *= limit.gain(work, &self.reference, &self.scheme, &self.state, now);
         }
         self.check_time_step(dt, &stable)?;
         Ok(self.cut_at(end, dt))
@@ -154,7 +156,8 @@ mod tests {
         let (reference, mut state) = (simulation.reference(), simulation.state().clone());
         let mut limit = AcousticLimit::new(&scheme, reference).unwrap();
         let mut gain = |state: &State, time: f64, step: u64| {
-            limit.gain(reference, &scheme, state, (time, step))
+            let work = &mut Workspace::of_strains(reference);
+            limit.gain(work, reference, &scheme, state, (time, step))
         };
         let time = stable_step(reference, &state).time;
         let first = gain(&state, time, 7);

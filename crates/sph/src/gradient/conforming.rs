@@ -4,7 +4,7 @@
 use jstsph_tensor::{Mat3, Vec3};
 
 use super::{Entry, GradientOperator};
-use crate::rows::Rows;
+use crate::rows::{Row, Rows};
 
 mod normal;
 mod solvable;
@@ -23,30 +23,30 @@ pub struct Correction {
     pub change: f64,
 }
 
-/// A row that is changed: offsets of its particles from their mean position, and the inverse of
-/// their moment matrix, for linear fits over the row.
-struct Row<'a> {
+/// A row that is changed: the mean position of its particles, and the inverse of the moment matrix of
+/// their offsets from it, for linear fits over the row.
+struct Fit<'a> {
     volume: f64,
     point: usize,
-    particles: &'a [u32],
-    offsets: Vec<Vec3>,
+    row: Row<'a, [f64; 3]>,
+    positions: &'a [Vec3],
+    mean: Vec3,
     inverse: Mat3,
 }
 
-impl<'a> Row<'a> {
+impl<'a> Fit<'a> {
     /// None where the particles do not determine a linear fit.
     fn new(
         operator: &'a GradientOperator,
         point: usize,
         volume: f64,
-        positions: &[Vec3],
+        positions: &'a [Vec3],
     ) -> Option<Self> {
-        let (particles, _) = operator.row(point);
-        let places = || particles.iter().map(|&c| positions[c as usize]);
-        let mean = places().sum::<Vec3>() / particles.len() as f64;
-        let offsets: Vec<Vec3> = places().map(|x| x - mean).collect();
-        let mut moment = offsets
-            .iter()
+        let row = operator.row(point);
+        let mean = row.indices().map(|c| positions[c]).sum::<Vec3>() / row.len() as f64;
+        let mut moment = row
+            .indices()
+            .map(|c| positions[c] - mean)
             .fold(Mat3::zeros(), |sum, o| sum + o * o.transpose());
         if operator.plane {
             moment.m33 = moment.norm();
@@ -54,25 +54,34 @@ impl<'a> Row<'a> {
         Some(Self {
             volume,
             point,
-            particles,
-            offsets,
+            row,
+            positions,
+            mean,
             inverse: moment.try_inverse()?,
         })
+    }
+
+    /// Of a particle from the mean. Not kept: that would be most of what a large body takes while it is
+    /// set up.
+    #[inline]
+    fn offset(&self, particle: usize) -> Vec3 {
+        self.positions[particle] - self.mean
     }
 
     /// Values of a field at the particles of the row, less their linear fit.
     fn residual(&self, field: &[Vec3], out: &mut Vec<Vec3>) {
         out.clear();
-        out.extend(self.particles.iter().map(|&c| field[c as usize]));
+        out.extend(self.row.indices().map(|c| field[c]));
         let mean = out.iter().sum::<Vec3>() / out.len() as f64;
+        let offsets = || self.row.indices().map(|c| self.offset(c));
         let slope = out
             .iter()
-            .zip(&self.offsets)
+            .zip(offsets())
             .fold(Mat3::zeros(), |sum, (value, offset)| {
                 sum + value * offset.transpose()
             })
             * self.inverse;
-        for (value, offset) in out.iter_mut().zip(&self.offsets) {
+        for (value, offset) in out.iter_mut().zip(offsets()) {
             *value -= mean + slope * offset;
         }
     }
@@ -134,14 +143,14 @@ impl GradientOperator {
             .map(|(found, wanted)| wanted - found)
             .collect();
         let is_large: Vec<bool> = defect.iter().map(|d| d.norm() > tolerance).collect();
-        let rows: Vec<Row<'_>> = (0..self.points())
-            .filter(|&q| self.row(q).0.iter().any(|&c| is_large[c as usize]))
-            .filter_map(|q| Row::new(self, q, point_volumes[q], positions))
+        let rows: Vec<Fit<'_>> = (0..self.points())
+            .filter(|&q| self.row(q).indices().any(|c| is_large[c]))
+            .filter_map(|q| Fit::new(self, q, point_volumes[q], positions))
             .collect();
         // Rows that stay cannot serve particles that only they reach.
         let mut reached = vec![false; self.particles()];
-        for &c in rows.iter().flat_map(|row| row.particles) {
-            reached[c as usize] = true;
+        for c in rows.iter().flat_map(|fit| fit.row.indices()) {
+            reached[c] = true;
         }
         for (value, reached) in defect.iter_mut().zip(reached) {
             if !reached {
@@ -156,8 +165,8 @@ impl GradientOperator {
         let mut changed = rows.iter().peekable();
         let mut residual = Vec::new();
         let corrected = Rows::build(self.points(), self.scale, |q, entries: &mut Vec<Entry>| {
-            let (indices, weights) = self.row(q);
-            entries.extend(indices.iter().copied().zip(weights.iter().copied()));
+            let row = self.row(q);
+            entries.extend(row.entries().map(|(c, weight)| (c as u32, *weight)));
             if let Some(row) = changed.next_if(|row| row.point == q) {
                 row.residual(&multiplier, &mut residual);
                 for ((_, weight), value) in entries.iter_mut().zip(&residual) {

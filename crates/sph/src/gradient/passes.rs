@@ -50,6 +50,28 @@ fn accumulate(a: &mut [f64; 4], x: &[f64; 4], s: f64) {
     }
 }
 
+/// Adds a tensor times a vector to three columns of sums. Each column with one number of its
+/// neighbour, which is not used: four numbers in a row that can be loaded at once. The last column
+/// comes second in its four.
+#[inline(always)]
+pub(crate) fn add_product(tensor: &Mat3, w: &[f64; 3], sums: &mut [[f64; 4]; 3]) {
+    let s: &[[f64; 3]; 3] = tensor.as_ref();
+    let [[s0, s1, s2], [s3, s4, s5], [s6, s7, s8]] = *s;
+    accumulate(&mut sums[0], &[s0, s1, s2, s3], w[0]);
+    accumulate(&mut sums[1], &[s3, s4, s5, s6], w[1]);
+    accumulate(&mut sums[2], &[s5, s6, s7, s8], w[2]);
+}
+
+/// What [`add_product`] has added up.
+#[inline(always)]
+pub(crate) fn sum_of_columns([first, second, third]: &[[f64; 4]; 3]) -> Vec3 {
+    Vec3::new(
+        first[0] + second[0] + third[1],
+        first[1] + second[1] + third[2],
+        first[2] + second[2] + third[3],
+    )
+}
+
 struct Gradients<'a> {
     operator: &'a GradientOperator,
     first: usize,
@@ -66,10 +88,11 @@ impl WithSimd for Gradients<'_> {
         let (rows, factor) = (&self.operator.rows, self.factor);
         if self.operator.plane {
             for (q, gradient) in self.gradients.iter_mut().enumerate() {
-                let (indices, weights) = rows.row(self.first + q);
+                let row = rows.row(self.first + q);
+                let field = &self.field[row.first..];
                 let mut g = [[0.0; 2]; 2];
-                for (&c, w) in indices.iter().zip(weights) {
-                    let f = &self.field[c as usize];
+                for (&c, w) in row.steps.iter().zip(row.weights) {
+                    let f = &field[c as usize];
                     for i in 0..2 {
                         g[0][i] += f[i] * w[0];
                         g[1][i] += f[i] * w[1];
@@ -91,10 +114,11 @@ impl WithSimd for Gradients<'_> {
             return;
         }
         for (q, gradient) in self.gradients.iter_mut().enumerate() {
-            let (indices, weights) = rows.row(self.first + q);
+            let row = rows.row(self.first + q);
+            let field = &self.field[row.first..];
             let mut columns = [[0.0; 4]; 3];
-            for (&c, w) in indices.iter().zip(weights) {
-                let f = &self.field[c as usize];
+            for (&c, w) in row.steps.iter().zip(row.weights) {
+                let f = &field[c as usize];
                 accumulate(&mut columns[0], f, w[0]);
                 accumulate(&mut columns[1], f, w[1]);
                 accumulate(&mut columns[2], f, w[2]);
@@ -122,10 +146,11 @@ impl WithSimd for Divergences<'_> {
         let columns = &self.operator.columns;
         if self.operator.plane {
             for (c, force) in self.forces.iter_mut().enumerate() {
-                let (indices, weights) = columns.row(self.first + c);
+                let column = columns.row(self.first + c);
+                let tensors = &self.tensors[column.first..];
                 let (mut x, mut y) = (0.0, 0.0);
-                for (&q, w) in indices.iter().zip(weights) {
-                    let s = &self.tensors[q as usize];
+                for (&q, w) in column.steps.iter().zip(column.weights) {
+                    let s = &tensors[q as usize];
                     x += s.m11 * w[0] + s.m12 * w[1];
                     y += s.m21 * w[0] + s.m22 * w[1];
                 }
@@ -134,22 +159,13 @@ impl WithSimd for Divergences<'_> {
             return;
         }
         for (c, force) in self.forces.iter_mut().enumerate() {
-            let (indices, weights) = columns.row(self.first + c);
-            let (mut first, mut second, mut third) = ([0.0; 4], [0.0; 4], [0.0; 4]);
-            for (&q, w) in indices.iter().zip(weights) {
-                let s: &[[f64; 3]; 3] = self.tensors[q as usize].as_ref();
-                let [[s0, s1, s2], [s3, s4, s5], [s6, s7, s8]] = *s;
-                // Each column with one number of its neighbour, which is not used: four numbers in a
-                // row that can be loaded at once. The last column comes second in its four.
-                accumulate(&mut first, &[s0, s1, s2, s3], w[0]);
-                accumulate(&mut second, &[s3, s4, s5, s6], w[1]);
-                accumulate(&mut third, &[s5, s6, s7, s8], w[2]);
+            let column = columns.row(self.first + c);
+            let tensors = &self.tensors[column.first..];
+            let mut sums = [[0.0; 4]; 3];
+            for (&q, w) in column.steps.iter().zip(column.weights) {
+                add_product(&tensors[q as usize], w, &mut sums);
             }
-            *force = Vec3::new(
-                first[0] + second[0] + third[1],
-                first[1] + second[1] + third[2],
-                first[2] + second[2] + third[3],
-            );
+            *force = sum_of_columns(&sums);
         }
     }
 }

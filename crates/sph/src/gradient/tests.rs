@@ -73,7 +73,7 @@ fn rows_sum_to_zero() {
     for body in irregular_bodies() {
         for (operator, points) in operators(&body) {
             for q in 0..points.len() {
-                let (_, weights) = operator.row(q);
+                let weights = operator.row(q).weights;
                 let sum: Vec3 = weights.iter().map(|w| Vec3::from(*w)).sum();
                 let size: f64 = weights.iter().map(|w| Vec3::from(*w).norm()).sum();
                 assert!(

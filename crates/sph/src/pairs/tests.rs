@@ -20,9 +20,8 @@ fn matrix(operator: &PairOperator) -> DMatrix<f64> {
     let n = operator.particles();
     let mut matrix = DMatrix::zeros(n, n);
     for a in 0..n {
-        let (indices, weights) = operator.row(a);
-        for (&b, weight) in indices.iter().zip(weights) {
-            matrix[(a, b as usize)] += weight;
+        for (b, weight) in operator.row(a).entries() {
+            matrix[(a, b)] += weight;
             matrix[(a, a)] -= weight;
         }
     }
@@ -44,15 +43,13 @@ fn symmetric_weights_are_symmetric_and_positive() {
         let operator = symmetric(&body);
         let mut pairs = 0;
         for a in 0..operator.particles() {
-            let (indices, weights) = operator.row(a);
-            assert!(indices.windows(2).all(|pair| pair[0] < pair[1]));
-            for (&b, weight) in indices.iter().zip(weights) {
-                let (others, back) = operator.row(b as usize);
-                let place = others.binary_search(&(a as u32)).expect("pairs are mutual");
-                let (one, other) = (
-                    body.volumes[a] * weight,
-                    body.volumes[b as usize] * back[place],
-                );
+            let row = operator.row(a);
+            assert!(row.indices().is_sorted_by(|one, next| one < next));
+            for (b, weight) in row.entries() {
+                let other = operator.row(b);
+                let (place, back) = (other.indices().position(|c| c == a), other.weights);
+                let place = place.expect("pairs are mutual");
+                let (one, other) = (body.volumes[a] * weight, body.volumes[b] * back[place]);
                 assert!(*weight > 0.0);
                 // Weights are shared between particles of a lattice within 1e-11 of the largest.
                 assert!(
@@ -80,9 +77,8 @@ fn symmetric_laplacian_conserves_and_removes_energy() {
                 sum += laplacian;
                 size += laplacian.norm();
                 energy += field[a].dot(&laplacian);
-                let (indices, weights) = operator.row(a);
-                for (&b, weight) in indices.iter().zip(weights) {
-                    let difference = field[b as usize] - field[a];
+                for (b, weight) in operator.row(a).entries() {
+                    let difference = field[b] - field[a];
                     differences -= 0.5 * volume * weight * difference.norm_squared();
                 }
                 let components = [0, 1, 2].map(|i| {
@@ -216,9 +212,9 @@ fn weights_of_a_lattice_are_found_from_neighbours_alone() {
     let support = support_of(&body, 0.6);
     let operator = PairOperator::symmetric(&body.positions, &body.volumes, &support).unwrap();
     let expected = -2.0 * body.volumes[12] * support.derivative_over_radius(body.spacing);
-    let (indices, weights) = operator.row(12);
-    assert_eq!(indices, [7, 11, 13, 17]);
-    for weight in weights {
+    let row = operator.row(12);
+    assert!(row.indices().eq([7, 11, 13, 17]));
+    for weight in row.weights {
         assert!((weight / expected - 1.0).abs() < 1e-12);
     }
     assert!((operator.spectral_bound() / (8.0 * expected) - 1.0).abs() < 1e-12);

@@ -2,7 +2,7 @@
 
 use jstsph_tensor::Vec3;
 
-use super::Row;
+use super::Fit;
 
 /// The conjugate gradients end when they have reduced the defect by this factor. Defects of a third of a
 /// face end below 10⁻⁴ of one, a twentieth of what is accepted without any correction. What then remains is
@@ -29,21 +29,21 @@ pub(super) struct NormalEquations {
 }
 
 impl NormalEquations {
-    pub(super) fn new(rows: &[Row<'_>], particles: usize) -> Self {
+    pub(super) fn new(rows: &[Fit<'_>], particles: usize) -> Self {
         // Rows of every particle, in their order.
         let mut counts = vec![0usize; particles + 1];
-        for &c in rows.iter().flat_map(|row| row.particles) {
-            counts[c as usize + 1] += 1;
+        for c in rows.iter().flat_map(|row| row.row.indices()) {
+            counts[c + 1] += 1;
         }
         for c in 0..particles {
             counts[c + 1] += counts[c];
         }
-        let mut lists = vec![(0u32, 0u32); counts[particles]];
+        let mut lists = vec![0u32; counts[particles]];
         let mut next = counts.clone();
         for (number, row) in rows.iter().enumerate() {
-            for (place, &c) in row.particles.iter().enumerate() {
-                lists[next[c as usize]] = (number as u32, place as u32);
-                next[c as usize] += 1;
+            for c in row.row.indices() {
+                lists[next[c]] = number as u32;
+                next[c] += 1;
             }
         }
         let reached: Vec<u32> = (0..particles as u32)
@@ -66,16 +66,16 @@ impl NormalEquations {
         let mut sums = vec![0.0; particles];
         let mut touched: Vec<u32> = Vec::new();
         for &c in &normal.particles {
-            for &(number, place) in &lists[counts[c as usize]..counts[c as usize + 1]] {
+            for &number in &lists[counts[c as usize]..counts[c as usize + 1]] {
                 let row = &rows[number as usize];
-                let arm = row.inverse * row.offsets[place as usize];
-                let mean = 1.0 / row.particles.len() as f64;
-                for (&d, offset) in row.particles.iter().zip(&row.offsets) {
+                let arm = row.inverse * row.offset(c as usize);
+                let mean = 1.0 / row.row.len() as f64;
+                for d in row.row.indices() {
                     // Zero only before the first sum; a later zero only lists d twice, and sorting finds it.
-                    if sums[d as usize] == 0.0 {
-                        touched.push(d);
+                    if sums[d] == 0.0 {
+                        touched.push(d as u32);
                     }
-                    sums[d as usize] -= row.volume * (mean + arm.dot(offset));
+                    sums[d] -= row.volume * (mean + arm.dot(&row.offset(d)));
                 }
                 sums[c as usize] += row.volume;
             }

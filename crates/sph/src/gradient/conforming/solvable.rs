@@ -2,7 +2,7 @@
 
 use jstsph_tensor::{Mat3, Vec3};
 
-use super::Row;
+use super::Fit;
 
 /// Singular values below this part of the largest count as zero: the boundary of a group lies in a plane
 /// or on a line.
@@ -18,7 +18,7 @@ const RANK_TOLERANCE: f64 = 1e-9;
 pub(super) fn make_solvable(
     defect: &mut [Vec3],
     weights: &[f64],
-    rows: &[Row<'_>],
+    rows: &[Fit<'_>],
     positions: &[Vec3],
     plane: bool,
 ) {
@@ -51,7 +51,7 @@ pub(super) fn make_solvable(
 }
 
 /// Particles that share rows, directly or through others, in ascending order.
-fn groups(rows: &[Row<'_>], particles: usize) -> Vec<Vec<usize>> {
+fn groups(rows: &[Fit<'_>], particles: usize) -> Vec<Vec<usize>> {
     let mut parent: Vec<u32> = (0..particles as u32).collect();
     fn root(parent: &mut [u32], mut c: u32) -> u32 {
         while parent[c as usize] != c {
@@ -62,14 +62,14 @@ fn groups(rows: &[Row<'_>], particles: usize) -> Vec<Vec<usize>> {
     }
     let mut is_reached = vec![false; particles];
     for row in rows {
-        let Some(&first) = row.particles.first() else {
+        if row.row.is_empty() {
             continue;
-        };
-        let first = root(&mut parent, first);
+        }
+        let first = root(&mut parent, row.row.first as u32);
         let mut lowest = first;
-        for &c in row.particles {
-            is_reached[c as usize] = true;
-            let other = root(&mut parent, c);
+        for c in row.row.indices() {
+            is_reached[c] = true;
+            let other = root(&mut parent, c as u32);
             let low = lowest.min(other);
             parent[lowest as usize] = low;
             parent[other as usize] = low;
