@@ -16,7 +16,7 @@ pub(crate) enum OwnedCells {
 }
 
 impl OwnedCells {
-    fn of(simulation: &Simulation) -> Self {
+    pub(crate) fn of(simulation: &Simulation) -> Self {
         let (mut quads, mut hexes) = (Vec::new(), Vec::new());
         for body in &simulation.reference().bodies {
             let first = body.particles.start as u32;

@@ -10,6 +10,10 @@ use rayon::prelude::*;
 /// Items per task.
 const CHUNK: usize = 256;
 
+/// Most chunks of a task in loops whose items may take different times, as points that flow and points
+/// that do not: left to itself, rayon cuts a loop into twice as many tasks as there are threads.
+const CHUNKS_OF_TASK: usize = 2;
+
 /// Most items of a leaf of a reduction.
 pub(crate) const LEAF: usize = 2 * CHUNK;
 
@@ -106,6 +110,7 @@ pub(crate) fn for_each_run<T: Send>(items: &mut [T], action: impl Fn(usize, &mut
     items
         .par_chunks_mut(CHUNK)
         .enumerate()
+        .with_max_len(CHUNKS_OF_TASK)
         .for_each(|(chunk, items)| action(chunk * CHUNK, items));
 }
 
@@ -130,6 +135,7 @@ pub(crate) fn for_each_chunk<A: Send, B: Send, C: Send>(
         .zip(second.par_chunks_mut(CHUNK))
         .zip(third.par_chunks_mut(CHUNK))
         .enumerate()
+        .with_max_len(CHUNKS_OF_TASK)
         .for_each(|(chunk, ((a, b), c))| action(chunk * CHUNK, a, b, c));
 }
 
