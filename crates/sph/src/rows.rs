@@ -108,14 +108,15 @@ impl<T: Copy> Shared<T> {
         }
     }
 
-    /// Start of the run with this key, which is that of `run`; `key_of` gives the key of another.
-    fn place(&mut self, key: &[i64], run: &[T], key_of: impl FnOnce(&[T]) -> bool) -> u32 {
+    /// Start of the run with this key, which is that of `run`; `is_equal` guards against other keys with
+    /// the same hash.
+    fn place(&mut self, key: &impl Hash, run: &[T], is_equal: impl FnOnce(&[T]) -> bool) -> u32 {
         let mut hasher = DefaultHasher::new();
         key.hash(&mut hasher);
         let hash = hasher.finish();
         if let Some(&(start, length)) = self.known.get(&hash) {
             let (start_at, length) = (start as usize, length as usize);
-            if length == run.len() && key_of(&self.list[start_at..start_at + length]) {
+            if length == run.len() && is_equal(&self.list[start_at..start_at + length]) {
                 return start;
             }
         }
@@ -135,17 +136,11 @@ impl<W: Weight> Rows<W> {
         mut row: impl FnMut(usize, &mut Vec<(u32, W)>),
     ) -> Self {
         let quantum = SHARING_TOLERANCE * scale;
-        let key_of = |weights: &[W], key: &mut Vec<i64>| {
-            key.clear();
-            key.extend(weights.iter().flat_map(|weight| {
-                (0..W::COMPONENTS).map(|c| (weight.component(c) / quantum).round() as i64)
-            }));
-        };
         let (mut all_steps, mut all_weights) = (Shared::new(), Shared::new());
         let mut places = Vec::with_capacity(rows);
         let (mut entries, mut entry_count) = (Vec::new(), 0);
         let (mut steps, mut weights): (Vec<u32>, Vec<W>) = (Vec::new(), Vec::new());
-        let (mut key, mut other) = (Vec::new(), Vec::new());
+        let mut key: Vec<i64> = Vec::new();
         for i in 0..rows {
             entries.clear();
             row(i, &mut entries);
@@ -153,15 +148,18 @@ impl<W: Weight> Rows<W> {
             let first = entries.first().map_or(0, |(index, _)| *index);
             steps.clear();
             steps.extend(entries.iter().map(|(index, _)| index - first));
-            key.clear();
-            key.extend(steps.iter().map(|step| i64::from(*step)));
-            let steps_at = all_steps.place(&key, &steps, |run| run == steps);
+            let steps_at = all_steps.place(&steps, &steps, |run| run == steps);
             weights.clear();
             weights.extend(entries.iter().map(|(_, weight)| *weight));
-            key_of(&weights, &mut key);
+            key.clear();
+            key.extend(weights.iter().flat_map(|weight| {
+                (0..W::COMPONENTS).map(|c| (weight.component(c) / quantum).round() as i64)
+            }));
             let weights_at = all_weights.place(&key, &weights, |run| {
-                key_of(run, &mut other);
-                other == key
+                run.iter().zip(&weights).all(|(one, other)| {
+                    (0..W::COMPONENTS)
+                        .all(|c| (one.component(c) - other.component(c)).abs() <= 2.0 * quantum)
+                })
             });
             places.push(Place {
                 first,

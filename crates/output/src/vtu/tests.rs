@@ -154,7 +154,9 @@ fn arrays_lie_in_the_order_opposite_to_their_elements() {
 #[test]
 fn an_array_of_exactly_one_block_has_no_partial_block() {
     let mut encoder = Encoder::new(FrameOptions::default());
-    encoder.append_compressed(&vec![7; BLOCK]).unwrap();
+    encoder
+        .append_compressed(BLOCK, std::iter::once(vec![7; BLOCK]))
+        .unwrap();
     let header: Vec<u64> = encoder.appended[..24]
         .chunks_exact(8)
         .map(|w| u64::from_le_bytes(w.try_into().unwrap()))
