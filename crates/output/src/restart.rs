@@ -41,13 +41,16 @@ impl RestartData {
     }
 }
 
+/// Appends the values of some items.
+type Append<'a> = dyn Fn(Range<usize>, &mut Vec<f64>) + 'a;
+
 /// An array of a restart file that is written piece by piece, without a copy of all its values.
 pub struct RestartPieces<'a> {
     name: String,
     shape: Vec<u64>,
     items: usize,
     width: usize,
-    append: Box<dyn Fn(Range<usize>, &mut Vec<f64>) + 'a>,
+    append: Box<Append<'a>>,
 }
 
 impl<'a> RestartPieces<'a> {

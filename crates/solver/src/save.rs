@@ -24,6 +24,9 @@ pub struct Saved {
     pub arrays: Vec<(String, Vec<f64>)>,
 }
 
+/// Appends the numbers of some items.
+type Append<'a> = dyn Fn(Range<usize>, &mut Vec<f64>) + 'a;
+
 /// One array of the state, read piece by piece: a large state is not held in memory once more.
 pub struct SavedArray<'a> {
     /// Name, unique in a state.
@@ -32,7 +35,7 @@ pub struct SavedArray<'a> {
     pub items: usize,
     /// Numbers of each item.
     pub width: usize,
-    numbers: Box<dyn Fn(Range<usize>, &mut Vec<f64>) + 'a>,
+    numbers: Box<Append<'a>>,
 }
 
 impl<'a> SavedArray<'a> {
