@@ -59,18 +59,16 @@ impl StandingWave {
         let displacement = self.amplitude * phase.sin();
         let reference = simulation.reference();
         let stresses = first_piola_stress(&simulation);
+        let points = reference.point_positions();
         [true, false].map(|wanted| {
-            let squares = stresses
-                .iter()
-                .zip(&reference.point_position)
-                .map(|(stress, x)| {
-                    let exact = (self.stress)(x) * displacement;
-                    let chosen = f64::from(u8::from(inside(x) == wanted));
-                    (
-                        chosen * (stress - exact).norm_squared(),
-                        chosen * exact.norm_squared(),
-                    )
-                });
+            let squares = stresses.iter().zip(&points).map(|(stress, x)| {
+                let exact = (self.stress)(x) * displacement;
+                let chosen = f64::from(u8::from(inside(x) == wanted));
+                (
+                    chosen * (stress - exact).norm_squared(),
+                    chosen * exact.norm_squared(),
+                )
+            });
             relative_error(squares, &reference.point_volume)
         })
     }
@@ -92,13 +90,11 @@ impl StandingWave {
                 ((velocity - exact).norm_squared(), exact.norm_squared())
             });
         let stresses = first_piola_stress(&simulation);
-        let stress = stresses
-            .iter()
-            .zip(&reference.point_position)
-            .map(|(stress, x)| {
-                let exact = (self.stress)(x) * displacement;
-                ((stress - exact).norm_squared(), exact.norm_squared())
-            });
+        let points = reference.point_positions();
+        let stress = stresses.iter().zip(&points).map(|(stress, x)| {
+            let exact = (self.stress)(x) * displacement;
+            ((stress - exact).norm_squared(), exact.norm_squared())
+        });
         Errors {
             velocity: relative_error(velocity, &reference.volume),
             stress: relative_error(stress, &reference.point_volume),

@@ -186,7 +186,7 @@ pub fn free_body(
             name: "body".into(),
             initial_temperature: vec![jstsph_material::ROOM_TEMPERATURE; body.positions.len()],
             initial_velocity: body.positions.iter().map(velocity).collect(),
-            body,
+            body: body.into(),
             material,
             body_force: None,
         }],

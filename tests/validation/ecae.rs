@@ -12,7 +12,7 @@ fn the_billet_goes_round_both_turns_inside_the_die() {
     let body = &simulation.reference().bodies[0];
     let position = &simulation.state().position;
 
-    let defects = inverted_cells(&body.cells, position);
+    let defects = inverted_cells(&body.body.cells, position);
     assert_eq!(defects.inverted, 0);
 
     let die = &finished.case.model.obstacles[0].obstacle.surface;

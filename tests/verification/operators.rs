@@ -74,7 +74,7 @@ fn errors(body: Body, scheme: Scheme, field: &Field, margin: f64) -> Vec<f64> {
         })
         .collect();
     let (mut sums, mut counts) = ([0.0; 2], [0.0; 2]);
-    for (q, x) in reference.point_position.iter().enumerate() {
+    for (q, x) in reference.point_positions().iter().enumerate() {
         let distance = x
             .iter()
             .take(d)

@@ -341,6 +341,15 @@ impl Reference {
         ) / body.spacing.powi(self.dimension.count() as i32 - 1)
     }
 
+    /// Reference positions of all evaluation points, m; put together anew.
+    #[must_use]
+    pub fn point_positions(&self) -> Vec<Vec3> {
+        let points = self.bodies.iter().enumerate().flat_map(|(body, owner)| {
+            (0..owner.points.len()).map(move |point| self.point_position(body, point))
+        });
+        points.collect()
+    }
+
     /// Reference position of a point of a body, m: of a particle, or in the middle of a bond.
     pub(crate) fn point_position(&self, body: usize, point: usize) -> Vec3 {
         let body = &self.bodies[body];

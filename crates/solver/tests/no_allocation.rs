@@ -187,7 +187,7 @@ fn with_substeps() -> Model {
     );
     model.dimension = Dimension::Solid;
     let block = &mut model.bodies[0];
-    block.body = build_body(shape, lattice, Dimension::Solid).unwrap();
+    block.body = build_body(shape, lattice, Dimension::Solid).unwrap().into();
     let count = block.body.positions.len();
     block.initial_temperature = vec![jstsph_material::ROOM_TEMPERATURE; count];
     block.initial_velocity = vec![Vec3::new(20.0, -600.0, 0.0); count];

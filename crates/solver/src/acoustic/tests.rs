@@ -71,7 +71,14 @@ fn frequencies_follow_the_deformation() {
         let mut frequency = Frequency::new(reference);
         let mut work = Workspace::new(reference);
         let mut of = |state: Option<&State>| {
-            frequency.largest(&mut work, reference, &reference.bodies[0], &scheme, state, None)
+            frequency.largest(
+                &mut work,
+                reference,
+                &reference.bodies[0],
+                &scheme,
+                state,
+                None,
+            )
         };
         let undeformed = of(None);
         let turn = Mat3::new(0.6, -0.8, 0.0, 0.8, 0.6, 0.0, 0.0, 0.0, 1.0);

@@ -176,9 +176,14 @@ impl Choice {
         let mut limit = f64::INFINITY;
         for (index, body) in reference.bodies.iter().enumerate() {
             let groups = without_fine.map(|groups| &groups[index]);
-            let largest = self
-                .frequency
-                .largest(&mut self.work, reference, body, scheme, Some(state), groups);
+            let largest = self.frequency.largest(
+                &mut self.work,
+                reference,
+                body,
+                scheme,
+                Some(state),
+                groups,
+            );
             limit = limit.min(2.0 / largest);
         }
         limit
