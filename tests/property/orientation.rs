@@ -27,10 +27,8 @@ fn renumbered(body: &Body, new_name: &[u32]) -> Body {
         renamed.weights[b] = body.weights[a];
         renamed.boundary[b] = body.boundary[a];
     }
-    if let Some(bonds) = &mut renamed.bonds {
-        for end in bonds.ends.iter_mut().flatten() {
-            *end = new_name[*end as usize];
-        }
+    for end in renamed.bonds.ends.iter_mut().flatten() {
+        *end = new_name[*end as usize];
     }
     let rename = |corner: &mut u32| *corner = new_name[*corner as usize];
     match &mut renamed.cells {
@@ -82,12 +80,11 @@ fn obliquely_turned_bodies_move_alike() {
     ] {
         let rotation = rotation(axis, 0.7);
         let mut turned = tumbling::body(dimension);
-        for x in turned.positions.iter_mut().chain(
-            turned
-                .bonds
-                .iter_mut()
-                .flat_map(|bonds| &mut bonds.midpoints),
-        ) {
+        for x in turned
+            .positions
+            .iter_mut()
+            .chain(&mut turned.bonds.midpoints)
+        {
             *x = rotation * *x;
         }
         for (name, scheme) in tumbling::conserving_schemes() {

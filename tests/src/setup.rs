@@ -124,10 +124,9 @@ pub fn jittered(mut body: Body, amount: f64) -> Body {
             *position += shift;
         }
     }
-    if let Some(bonds) = &mut body.bonds {
-        for (midpoint, [a, b]) in bonds.midpoints.iter_mut().zip(&bonds.ends) {
-            *midpoint = (body.positions[*a as usize] + body.positions[*b as usize]) * 0.5;
-        }
+    let bonds = &mut body.bonds;
+    for (midpoint, [a, b]) in bonds.midpoints.iter_mut().zip(&bonds.ends) {
+        *midpoint = (body.positions[*a as usize] + body.positions[*b as usize]) * 0.5;
     }
     body
 }

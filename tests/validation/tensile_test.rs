@@ -16,7 +16,7 @@ fn largest_gap(finished: &Finished) -> f64 {
     let body = &finished.case.model.bodies[0].body;
     let position = &finished.simulation.state().position;
     let stretch = finished.probe("length") / 40e-3;
-    let bonds = body.bonds.as_ref().expect("a cubic lattice has bonds");
+    let bonds = &body.bonds;
     bonds
         .ends
         .iter()

@@ -338,9 +338,6 @@ impl Case {
                     self.model.scheme.smoothing_ratio
                 ))
             }),
-            SolverError::NoBonds { body } => {
-                place(body).map(|place| Problem::new(&place.lattice, error.to_string()))
-            }
             SolverError::Material { body, .. } => {
                 place(body).map(|place| Problem::new(&place.material, error.to_string()))
             }

@@ -124,12 +124,14 @@ fn describe(case: &Case, mut simulation: Simulation, threads: usize) -> String {
     let stability = Stability::new(case, &simulation);
     let step = simulation.stable_time_step();
     let steps = (case.time.end / step).ceil();
+    // The first step finds the frequency of the bodies, which the others use for a while.
+    let mut failure = simulation.advance_step(case.time.end).err();
     let (before, started) = (simulation.step_count(), Instant::now());
-    while started.elapsed() < TRIAL && simulation.time() < case.time.end {
-        if let Err(error) = simulation.advance_step(case.time.end) {
-            let _ = writeln!(text, "  warning: the first steps fail: {error}");
-            break;
-        }
+    while failure.is_none() && started.elapsed() < TRIAL && simulation.time() < case.time.end {
+        failure = simulation.advance_step(case.time.end).err();
+    }
+    if let Some(error) = failure {
+        let _ = writeln!(text, "  warning: the first steps fail: {error}");
     }
     let made = (simulation.step_count() - before).max(1) as f64;
     let each = started.elapsed().as_secs_f64() / made;

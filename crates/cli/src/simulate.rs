@@ -96,12 +96,10 @@ fn default_threads(case: &Case) -> usize {
         .model
         .bodies
         .iter()
-        .map(
-            |body| match (case.model.scheme.quadrature, &body.body.bonds) {
-                (Quadrature::Bonds, Some(bonds)) => bonds.ends.len(),
-                _ => body.body.positions.len(),
-            },
-        )
+        .map(|body| match case.model.scheme.quadrature {
+            Quadrature::Bonds => body.body.bonds.ends.len(),
+            Quadrature::Particles => body.body.positions.len(),
+        })
         .sum();
     if points < POINTS_FOR_THREADS {
         1

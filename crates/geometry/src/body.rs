@@ -33,7 +33,7 @@ pub struct Body {
     /// (or of the layers, if that is smaller) on rings.
     pub support_spacing: f64,
     /// Pairs of neighbours.
-    pub bonds: Option<Bonds>,
+    pub bonds: Bonds,
     /// Full lattice cells, in the order of their lowest corner; between rings pairs of triangles, strip by
     /// strip outwards and layer by layer, none if the first ring has an odd number of nodes or fewer than six.
     pub cells: Cells,

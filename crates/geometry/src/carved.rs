@@ -90,7 +90,7 @@ pub(crate) fn build(
         weights: vec![cell; positions.len()],
         spacing,
         support_spacing: spacing,
-        bonds: Some(bonds),
+        bonds,
         cells,
         boundary,
         surface,

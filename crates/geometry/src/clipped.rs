@@ -71,7 +71,7 @@ pub(crate) fn build(shape: Shape, round: &Round, n: usize, layers: usize) -> Bod
         weights: vec![cell; positions.len()],
         spacing,
         support_spacing: spacing,
-        bonds: Some(bonds),
+        bonds,
         cells: grid.cells(),
         boundary: grid.boundary(),
         surface: None,

@@ -92,7 +92,7 @@ pub(crate) fn build(shape: Shape, counts: [usize; 3], dimension: Dimension) -> B
         weights: vec![cell; positions.len()],
         spacing,
         support_spacing: spacing,
-        bonds: Some(bonds),
+        bonds,
         cells: grid.cells(),
         boundary: grid.boundary(),
         surface: None,

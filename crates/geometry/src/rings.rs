@@ -103,7 +103,7 @@ pub(crate) fn build(
             Dimension::PlaneStrain => width,
             Dimension::Solid => width.min(layer),
         },
-        bonds: Some(bonds(&strips, dimension, layers, layer, &positions)),
+        bonds: bonds(&strips, dimension, layers, layer, &positions),
         cells: cells(&strips, dimension, layers, offsets.len()),
         faces: round_faces(round, faces),
         positions,

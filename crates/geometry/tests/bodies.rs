@@ -62,7 +62,7 @@ fn rings(layers: usize) -> Lattice {
 
 /// Whether the nodes lie on rings: their section is no square lattice.
 fn is_wound(body: &Body) -> bool {
-    let bonds = body.bonds.as_ref().unwrap();
+    let bonds = &body.bonds;
     let mut arms = bonds
         .ends
         .iter()
@@ -142,10 +142,8 @@ fn volumes_add_up_to_the_shape_and_are_positive() {
         let expected = body.shape.volume(body.dimension);
         assert_close(sum(&body.volumes), expected, &name);
         assert!(body.volumes.iter().all(|&volume| volume > 0.0), "{name}");
-        if let Some(bonds) = &body.bonds {
-            assert_close(sum(&bonds.volumes), expected, &name);
-            assert!(bonds.volumes.iter().all(|&volume| volume > 0.0), "{name}");
-        }
+        assert_close(sum(&body.bonds.volumes), expected, &name);
+        assert!(body.bonds.volumes.iter().all(|&v| v > 0.0), "{name}");
     }
 }
 
@@ -177,7 +175,7 @@ fn inner_nodes_have_the_volume_of_their_weight() {
             if body.boundary[node] {
                 // Fewer corners than a full cell, or, in a clipped body, a share of the rest.
                 assert!(body.volumes[node] < 1.5 * weight, "{:?} {node}", body.shape);
-            } else if body.bonds.is_none() || !near_rim(&body, node) {
+            } else if is_wound(&body) || !near_rim(&body, node) {
                 assert_close(body.volumes[node], weight, "inner node");
             }
         }
@@ -214,7 +212,7 @@ fn tributary_volumes_of_boxes_are_halves_quarters_and_eighths() {
 #[test]
 fn inner_bonds_have_a_half_or_a_third_of_a_cell_and_nodes_half_their_bonds() {
     for body in every_kind().into_iter().filter(|body| !is_wound(body)) {
-        let bonds = body.bonds.as_ref().unwrap();
+        let bonds = &body.bonds;
         let parts = body.dimension.count() as f64;
         let mut halves = vec![0.0; body.positions.len()];
         let mut inner = 0;
@@ -252,7 +250,7 @@ fn bonds_of_rings_have_the_volume_and_the_middle_of_the_body() {
     let wound: Vec<Body> = every_kind().into_iter().filter(is_wound).collect();
     assert_eq!(wound.len(), 4);
     for body in wound {
-        let bonds = body.bonds.as_ref().unwrap();
+        let bonds = &body.bonds;
         let volume = body.shape.volume(body.dimension);
         assert_close(sum(&bonds.volumes), volume, "volume of the bonds");
         assert!(bonds.volumes.iter().all(|v| *v > 0.0));
@@ -313,7 +311,7 @@ fn volumes_have_the_mirror_symmetries_of_the_lattice() {
 #[test]
 fn bond_volumes_are_mirror_symmetric_too() {
     let body = cylinder(Axis::Z, clipped(5, 6));
-    let bonds = body.bonds.as_ref().unwrap();
+    let bonds = &body.bonds;
     let place =
         |x: f64, y: f64, z: f64| [x, y, z].map(|c| (c * 100.0 / body.spacing).round() as i64);
     let volumes: HashMap<_, _> = bonds

@@ -51,10 +51,7 @@ fn a_box_cut_into_two_is_the_same_body() {
     assert_eq!(carved.positions, whole.positions);
     assert_eq!(carved.cells, whole.cells);
     assert_eq!(carved.boundary, whole.boundary);
-    let (ours, theirs) = (
-        carved.bonds.as_ref().unwrap(),
-        whole.bonds.as_ref().unwrap(),
-    );
+    let (ours, theirs) = (&carved.bonds, &whole.bonds);
     assert_eq!(ours.ends, theirs.ends);
     for (a, b) in ours.volumes.iter().zip(&theirs.volumes) {
         assert!((a / b - 1.0).abs() < ROUND_OFF, "{a} {b}");
@@ -182,7 +179,7 @@ fn a_slot_of_one_spacing_has_no_bonds_across() {
     assert_eq!(body.positions.len(), 6 * 5);
     assert_eq!(body.cells.len(), 5 * 4 - 2);
     assert_eq!(body.shape.volume(body.dimension), 18.0);
-    let bonds = body.bonds.as_ref().unwrap();
+    let bonds = &body.bonds;
     let crosses = bonds.midpoints.iter().any(|x| x.x == 2.5 && x.y > 2.0);
     assert!(!crosses);
     assert!((area(&body, "facing_right") - (4.0 + 2.0)).abs() < 1e-12);

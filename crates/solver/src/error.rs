@@ -23,14 +23,6 @@ pub enum SolverError {
         /// Cause.
         source: ParameterError,
     },
-    /// Bond quadrature needs lattice bonds.
-    #[error(
-        "body \"{body}\" has no lattice bonds, which quadrature = \"bonds\" needs; use a cubic lattice or quadrature = \"particles\""
-    )]
-    NoBonds {
-        /// Body.
-        body: String,
-    },
     /// The model is inconsistent in itself.
     #[error("{what}")]
     Inconsistent {

@@ -29,7 +29,8 @@ const SMALLEST_FACE: f64 = 0.1;
 #[derive(Clone, Debug)]
 struct HeatBody {
     thermal: Thermal,
-    conduction: Conduction,
+    /// None where no heat flows.
+    conduction: Option<Conduction>,
     /// Range of its points in the flux buffer.
     flux: std::ops::Range<usize>,
     /// Outward area vectors of the particles in the reference configuration, m².
@@ -171,13 +172,17 @@ impl HeatProcess {
             let volume = &reference.volume[body.particles.clone()];
             let conductivity = thermal.conductivity.largest();
             let conduction = if conducts && conductivity > 0.0 {
-                Conduction::new(input, body, model.scheme.quadrature, volume)?
+                Some(Conduction::new(input, body, model.scheme.quadrature)?)
             } else {
-                Conduction::None
+                None
             };
             let capacity = body.material_density * thermal.heat_capacity.smallest();
-            let bound = conduction.spectral_bound(body, volume) * conductivity / capacity;
-            let flux = first_flux..first_flux + conduction.points();
+            let bound = conduction
+                .as_ref()
+                .map_or(0.0, |flow| flow.spectral_bound(body, volume))
+                * conductivity
+                / capacity;
+            let flux = first_flux..first_flux + conduction.as_ref().map_or(0, Conduction::points);
             first_flux = flux.end;
             bodies.push(HeatBody {
                 boundary: body
@@ -376,8 +381,13 @@ impl HeatProcess {
             volume: &context.reference.volume[range.clone()],
             conductivity: &heat.thermal.conductivity,
         };
-        heat.conduction
-            .rate(of, &mut self.flux[heat.flux.clone()], &mut self.rate[range]);
+        match &heat.conduction {
+            Some(conduction) => {
+                let flux = &mut self.flux[heat.flux.clone()];
+                conduction.rate(of, flux, &mut self.rate[range]);
+            }
+            None => self.rate[range].fill(0.0),
+        }
     }
 
     /// Flux, convection and contact with obstacles, added to the rate and to the books.

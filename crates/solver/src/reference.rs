@@ -223,9 +223,7 @@ impl Reference {
                 (at_particles()?, ends, Shares::identity(particles))
             }
             Quadrature::Bonds => {
-                let bonds = body.bonds.as_ref().ok_or_else(|| SolverError::NoBonds {
-                    body: input.name.clone(),
-                })?;
+                let bonds = &body.bonds;
                 self.point_volume.extend_from_slice(&bonds.volumes);
                 let gradient =
                     GradientOperator::at_points(&bonds.midpoints, &body.positions, &support)

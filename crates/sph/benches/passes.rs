@@ -47,7 +47,7 @@ fn at_particles(body: &Body) -> GradientOperator {
 }
 
 fn at_bonds(body: &Body) -> GradientOperator {
-    let bonds = body.bonds.as_ref().expect("cubic lattices have bonds");
+    let bonds = &body.bonds;
     GradientOperator::at_points(&bonds.midpoints, &body.positions, &support(body, 0.8))
         .expect("lattices have neighbours")
 }

@@ -135,10 +135,9 @@ fn round_bodies_sum_by_parts() {
             GradientOperator::at_particles(&body.positions, &body.weights, &support).unwrap(),
             body.volumes.clone(),
         )];
-        if let Some(bonds) = &body.bonds {
-            let operator = GradientOperator::at_points(&bonds.midpoints, &body.positions, &support);
-            candidates.push((operator.unwrap(), bonds.volumes.clone()));
-        }
+        let bonds = &body.bonds;
+        let operator = GradientOperator::at_points(&bonds.midpoints, &body.positions, &support);
+        candidates.push((operator.unwrap(), bonds.volumes.clone()));
         for (operator, volumes) in candidates {
             let (operator, correction) = corrected(operator, &body, &volumes, &vectors);
             let is_box = matches!(body.shape, Shape::Box { .. });
@@ -159,7 +158,7 @@ fn carved_bodies_sum_by_parts() {
         let face = body.spacing.powi(body.dimension.count() as i32 - 1);
         let support = support(&body, 0.8);
         let vectors = area_vectors(&body, &body.weights, &support);
-        let bonds = body.bonds.as_ref().unwrap();
+        let bonds = &body.bonds;
         let operator =
             GradientOperator::at_points(&bonds.midpoints, &body.positions, &support).unwrap();
         let inner = |a: usize| !body.boundary[a];

@@ -37,7 +37,7 @@ fn operator(body: &Body, form: Form, ratio: f64) -> (GradientOperator, &[f64]) {
         Form::TwoWeights => (nodal(&body.weights), &body.volumes),
         Form::OneVolume => (nodal(&body.volumes), &body.volumes),
         Form::Bonds => {
-            let bonds = body.bonds.as_ref().unwrap();
+            let bonds = &body.bonds;
             let operator =
                 GradientOperator::at_points(&bonds.midpoints, &body.positions, &support).unwrap();
             (operator, &bonds.volumes)
