@@ -75,6 +75,24 @@ impl Frequency {
         }
     }
 
+    /// The limit 2/ω_max of the deformed bodies, or of what is not fine in them, s.
+    pub(crate) fn limit(
+        &mut self,
+        work: &mut Workspace,
+        reference: &Reference,
+        scheme: &Scheme,
+        state: &State,
+        without_fine: Option<&[Groups]>,
+    ) -> f64 {
+        let mut limit = f64::INFINITY;
+        for (index, body) in reference.bodies.iter().enumerate() {
+            let groups = without_fine.map(|groups| &groups[index]);
+            let largest = self.largest(work, reference, body, scheme, Some(state), groups);
+            limit = limit.min(2.0 / largest);
+        }
+        limit
+    }
+
     /// ω_max of one body, 1/s: square root of the largest eigenvalue of
     ///
     /// ```text
@@ -87,7 +105,7 @@ impl Frequency {
     /// flow stress over the moduli) and the softening by plastic flow are left out; the latter only lowers
     /// frequencies. Overwrites the momenta with a fourth number, the velocity gradient and the volume
     /// change of the workspace.
-    pub(crate) fn largest(
+    fn largest(
         &mut self,
         work: &mut Workspace,
         reference: &Reference,

@@ -19,6 +19,8 @@ pub struct Reference {
     pub dimension: Dimension,
     /// Where strains and stresses live.
     pub quadrature: Quadrature,
+    /// Weights of the gradient at particles.
+    pub weights: Weights,
     /// Reference positions X of all particles, m.
     pub position: Vec<Vec3>,
     /// Tributary volumes V_a of all particles, m³ (per metre of thickness in plane strain).
@@ -55,9 +57,6 @@ pub struct BodyReference {
     pub support: Support,
     /// The operator B from particles to points.
     pub gradient: GradientOperator,
-    /// What Σ_q V_q B_qc should be for every particle, m²: the boundary as its area vectors, zero
-    /// away from it.
-    pub area_vectors: Vec<Vec3>,
     /// How B was made to sum by parts, where it did not do so by itself.
     pub correction: Option<Correction>,
     /// Laplacian of the JST dissipation, when it is used.
@@ -188,6 +187,7 @@ impl Reference {
         let mut reference = Self {
             dimension: model.dimension,
             quadrature: model.scheme.quadrature,
+            weights: model.scheme.weights,
             position: Vec::new(),
             volume: Vec::new(),
             point_volume: Vec::new(),
@@ -207,10 +207,7 @@ impl Reference {
             source,
         };
         let support = support(input, model.dimension, scheme);
-        let weights = match scheme.weights {
-            Weights::Interpolation => &body.weights,
-            Weights::Volume => &body.volumes,
-        };
+        let weights = scheme.weights.of(body);
         let particles = body.positions.len();
         let at_particles =
             || GradientOperator::at_particles(&body.positions, weights, &support).map_err(failed);
@@ -232,14 +229,10 @@ impl Reference {
                 (gradient, bonds.ends.clone(), shares)
             }
         };
-        let area_vectors = boundary::area_vectors(body, weights, &support);
         let (gradient, correction) = if scheme.boundary_correction {
-            boundary::corrected(
-                gradient,
-                body,
-                &self.point_volume[first_point..],
-                &area_vectors,
-            )
+            let area_vectors = boundary::area_vectors(body, weights, &support);
+            let point_volumes = &self.point_volume[first_point..];
+            boundary::corrected(gradient, body, point_volumes, &area_vectors)
         } else {
             (gradient, None)
         };
@@ -302,7 +295,6 @@ impl Reference {
             spacing: body.spacing,
             support,
             gradient,
-            area_vectors,
             correction,
             laplacian,
             pairs,
@@ -327,14 +319,15 @@ impl Reference {
 
     /// Largest defect of summation by parts, |Σ_q V_q B_qa − N_a| over the particles of a body for which
     /// `chosen(a)` holds, in units of one lattice face area: zero when a constant stress gives no force
-    /// inside and the exact traction at the boundary. docs/theory.md lists what to expect.
+    /// inside and the exact traction at the boundary. docs/theory.md lists what to expect. Works out the
+    /// boundary anew.
     #[must_use]
     pub fn summation_defect(&self, body: usize, chosen: impl Fn(usize) -> bool) -> f64 {
         let body = &self.bodies[body];
         boundary::largest_defect(
             &body.gradient,
             &self.point_volume[body.points.clone()],
-            &body.area_vectors,
+            &boundary::area_vectors(&body.body, self.weights.of(&body.body), &body.support),
             chosen,
         ) / body.spacing.powi(self.dimension.count() as i32 - 1)
     }
@@ -364,6 +357,16 @@ impl Reference {
             .position(|body| body.points.contains(&point))
             .unwrap_or_default();
         (body, point - self.bodies[body].points.start)
+    }
+}
+
+impl Weights {
+    /// The weights of a body, m³.
+    fn of(self, body: &Body) -> &[f64] {
+        match self {
+            Self::Interpolation => &body.weights,
+            Self::Volume => &body.volumes,
+        }
     }
 }
 

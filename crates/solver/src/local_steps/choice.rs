@@ -173,20 +173,8 @@ impl Choice {
             scheme,
             ..
         } = simulation;
-        let mut limit = f64::INFINITY;
-        for (index, body) in reference.bodies.iter().enumerate() {
-            let groups = without_fine.map(|groups| &groups[index]);
-            let largest = self.frequency.largest(
-                &mut self.work,
-                reference,
-                body,
-                scheme,
-                Some(state),
-                groups,
-            );
-            limit = limit.min(2.0 / largest);
-        }
-        limit
+        self.frequency
+            .limit(&mut self.work, reference, scheme, state, without_fine)
     }
 
     /// Makes the groups of a threshold and returns the number of fine points.

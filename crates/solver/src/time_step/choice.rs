@@ -56,11 +56,7 @@ impl AcousticLimit {
         let age = step - self.step;
         let changed = (time - self.time).abs() > CHANGE * self.time;
         if self.gain == 0.0 || age >= LATEST || (changed && age >= EARLIEST) {
-            let frequency = &mut self.frequency;
-            let limit = reference.bodies.iter().map(|body| {
-                2.0 / frequency.largest(work, reference, body, scheme, Some(state), None)
-            });
-            self.gain = limit.fold(f64::INFINITY, f64::min) / time;
+            self.gain = self.frequency.limit(work, reference, scheme, state, None) / time;
             self.time = time;
             self.step = step;
         }
