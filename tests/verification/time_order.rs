@@ -77,7 +77,10 @@ fn differences(now: &Simulation, reference: &Simulation) -> Vec<f64> {
     vec![
         vectors(&a.momentum, &b.momentum),
         tensors(&a.deformation_gradient, &b.deformation_gradient),
-        tensors(&a.cofactor, &b.cofactor),
+        root_mean_square(
+            (0..a.deformation_gradient.len())
+                .map(|q| (a.cofactor_at(q) - b.cofactor_at(q)).norm_squared()),
+        ),
         root_mean_square(
             a.jacobian
                 .iter()

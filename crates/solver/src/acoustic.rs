@@ -1,14 +1,14 @@
 //! The largest frequency of the discrete elastic operator, undeformed and deformed: what the time step
 //! of an explicit integrator really has to resolve.
 
-use jstsph_tensor::{Mat3, Vec3, double_dot, mean_trace, symmetric_part};
+use jstsph_tensor::{Mat3, Vec3, mean_trace, symmetric_part};
 
 use crate::local_steps::Groups;
 use crate::model::{Quadrature, Scheme};
 use crate::parallel;
 use crate::reference::{BodyReference, Reference};
 use crate::simulation::Simulation;
-use crate::state::{State, Workspace};
+use crate::state::{Deformation, State, Workspace};
 
 use lanczos::Tridiagonal;
 
@@ -25,7 +25,7 @@ pub(crate) struct Frequency {
 }
 
 /// Which operator of a body: its stiffness averages dilations as the scheme does, and follows F and
-/// its cofactor where they are given.
+/// H where they are given.
 #[derive(Clone, Copy)]
 struct Elasticity<'a> {
     body: &'a BodyReference,
@@ -33,7 +33,7 @@ struct Elasticity<'a> {
     point_volume: &'a [f64],
     /// Whether the pressure is that of the particles' J, with bonds.
     averaged: bool,
-    deformation: Option<(&'a [Mat3], &'a [Mat3])>,
+    deformation: Option<Deformation<'a>>,
     /// Leaves out the stiffness of the fine points and particles.
     without_fine: Option<&'a Groups>,
 }
@@ -42,9 +42,9 @@ impl Elasticity<'_> {
     /// F⁻ᵀ of a point, when the body is deformed.
     #[inline]
     fn inverse_transpose(&self, q: usize) -> Option<Mat3> {
-        self.deformation.map(|(gradients, cofactors)| {
-            let (f, h) = (&gradients[q], &cofactors[q]);
-            h * (3.0 / double_dot(f, h))
+        self.deformation.map(|deformation| {
+            let (cofactor, determinant) = deformation.cofactor_and_determinant(q);
+            cofactor * (1.0 / determinant)
         })
     }
 
@@ -121,10 +121,7 @@ impl Frequency {
             point_volume: &reference.point_volume[points.clone()],
             averaged: scheme.quadrature == Quadrature::Bonds
                 && scheme.formulation.integrates_jacobian(),
-            deformation: state.map(|state| {
-                let gradients = &state.deformation_gradient[points.clone()];
-                (gradients, &state.cofactor[points.clone()])
-            }),
+            deformation: state.map(|state| state.deformation(points.clone())),
             without_fine,
         };
         let volume = elasticity.volume;

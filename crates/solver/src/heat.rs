@@ -376,8 +376,7 @@ impl HeatProcess {
             body,
             quadrature: context.quadrature,
             temperature: &state.temperature[range.clone()],
-            deformation_gradient: &state.deformation_gradient[body.points.clone()],
-            cofactor: &state.cofactor[body.points.clone()],
+            deformation: state.deformation(body.points.clone()),
             volume: &context.reference.volume[range.clone()],
             conductivity: &heat.thermal.conductivity,
         };
@@ -427,7 +426,7 @@ impl HeatProcess {
             let displacement = context.displacement[o];
             let surface = &obstacle.obstacle.surface;
             let boundary = &self.bodies[index].boundary;
-            let cofactors = &state.cofactor[body.points.clone()];
+            let deformation = state.deformation(body.points.clone());
             let reach = TOUCHING * body.spacing;
             parallel::for_each_pair(
                 &mut self.rate[body.particles.clone()],
@@ -445,7 +444,7 @@ impl HeatProcess {
                     }
                     // Nanson: the current area is H times the reference one; the wall's normal
                     // points at the body, its own outward area the other way.
-                    let current = body.shares.mean_tensor(a, |q| cofactors[q]) * area;
+                    let current = body.shares.mean_tensor(a, |q| deformation.cofactor(q)) * area;
                     let facing = -current.dot(&gap.normal);
                     if facing > 0.0 {
                         let flow = exchange.conductance

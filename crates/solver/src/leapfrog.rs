@@ -38,7 +38,7 @@ pub(crate) fn step(simulation: &mut Simulation, end: f64) -> Result<(), SolverEr
     if simulation.synchronised {
         simulation.dt = simulation.next_time_step(end)?;
         simulation.finished(Phase::TimeStep);
-        simulation.velocity_gradient();
+        simulation.keep_velocity_gradient();
         simulation.finished(Phase::Gradient);
         simulation.forces(|state, a| state.position[a]);
         simulation.kick(Kick::Opening, 0.5 * simulation.dt, simulation.dt);
@@ -49,7 +49,7 @@ pub(crate) fn step(simulation: &mut Simulation, end: f64) -> Result<(), SolverEr
     let dt = simulation.dt.min(end - simulation.time);
     simulation.move_particles(dt);
     simulation.finished(Phase::Strain);
-    simulation.velocity_gradient();
+    simulation.keep_velocity_gradient();
     simulation.finished(Phase::Gradient);
     simulation.drift_strains(dt);
     simulation.finished(Phase::Strain);
@@ -75,21 +75,28 @@ pub(crate) fn step(simulation: &mut Simulation, end: f64) -> Result<(), SolverEr
 }
 
 impl Simulation {
+    /// x, and the padded momenta.
     pub(crate) fn move_particles(&mut self, dt: f64) {
         let Self {
-            reference, state, ..
+            reference,
+            state,
+            work,
+            ..
         } = self;
         let State {
             position, momentum, ..
         } = state;
-        parallel::for_each(position, |a, x| {
-            *x += momentum[a] * (dt / reference.density[a])
+        let padded = &mut work.padded_momentum;
+        parallel::for_each_pair(position, padded, |a, x, padded| {
+            *x += momentum[a] * (dt / reference.density[a]);
+            *padded = strain::padded(&momentum[a]);
         });
     }
 
     pub(crate) fn drift_strains(&mut self, dt: f64) {
         self.book_jacobian_dissipation(dt);
         let strains = self.strains();
+        let kept = self.keeps_velocity_gradient();
         let (reference, state, work) = (&self.reference, &mut self.state, &mut self.work);
         if let Some(heat) = &mut self.heat {
             heat.open(state);
@@ -97,7 +104,7 @@ impl Simulation {
         if strains.formulation == Formulation::Displacement {
             strain::from_positions(strains, reference, state, work);
         } else {
-            strain::drift(strains, reference, state, work, dt);
+            strain::drift(strains, reference, state, work, (dt, kept));
         }
     }
 

@@ -114,6 +114,33 @@ pub(crate) fn for_each_run<T: Send>(items: &mut [T], action: impl Fn(usize, &mut
         .for_each(|(chunk, items)| action(chunk * CHUNK, items));
 }
 
+/// Calls `action(offset, first, second, third)` on runs of [`CHUNK`] items of `first` and `second`, the
+/// last one shorter, where `offset` is the index of the first of them and `third` has one entry for each
+/// `width` items; `width` divides [`CHUNK`].
+pub(crate) fn for_each_chunk_of<A: Send, B: Send, C: Send>(
+    (first, second): (&mut [A], &mut [B]),
+    (third, width): (&mut [C], usize),
+    action: impl Fn(usize, &mut [A], &mut [B], &mut [C]) + Sync,
+) {
+    debug_assert!(first.len() == second.len() && CHUNK.is_multiple_of(width));
+    debug_assert_eq!(first.len().div_ceil(width), third.len());
+    let entries = CHUNK / width;
+    if serial(first.len()) {
+        let chunks = first.chunks_mut(CHUNK).zip(second.chunks_mut(CHUNK));
+        for (chunk, ((a, b), c)) in chunks.zip(third.chunks_mut(entries)).enumerate() {
+            action(chunk * CHUNK, a, b, c);
+        }
+        return;
+    }
+    first
+        .par_chunks_mut(CHUNK)
+        .zip(second.par_chunks_mut(CHUNK))
+        .zip(third.par_chunks_mut(entries))
+        .enumerate()
+        .with_max_len(CHUNKS_OF_TASK)
+        .for_each(|(chunk, ((a, b), c))| action(chunk * CHUNK, a, b, c));
+}
+
 /// Calls `action(offset, first, second, third)` on runs of [`CHUNK`] items, the last one shorter,
 /// where `offset` is the index of the first of them.
 pub(crate) fn for_each_chunk<A: Send, B: Send, C: Send>(
@@ -122,21 +149,7 @@ pub(crate) fn for_each_chunk<A: Send, B: Send, C: Send>(
     third: &mut [C],
     action: impl Fn(usize, &mut [A], &mut [B], &mut [C]) + Sync,
 ) {
-    debug_assert!(first.len() == second.len() && second.len() == third.len());
-    if serial(first.len()) {
-        let chunks = first.chunks_mut(CHUNK).zip(second.chunks_mut(CHUNK));
-        for (chunk, ((a, b), c)) in chunks.zip(third.chunks_mut(CHUNK)).enumerate() {
-            action(chunk * CHUNK, a, b, c);
-        }
-        return;
-    }
-    first
-        .par_chunks_mut(CHUNK)
-        .zip(second.par_chunks_mut(CHUNK))
-        .zip(third.par_chunks_mut(CHUNK))
-        .enumerate()
-        .with_max_len(CHUNKS_OF_TASK)
-        .for_each(|(chunk, ((a, b), c))| action(chunk * CHUNK, a, b, c));
+    for_each_chunk_of((first, second), (third, 1), action);
 }
 
 /// Calls `action(i, &mut first[i], &mut second[i], &mut third[i], group)` for every i, where

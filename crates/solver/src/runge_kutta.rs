@@ -3,6 +3,8 @@
 
 use std::ops::{Add, Mul, Sub};
 
+use jstsph_tensor::Mat3;
+
 use crate::constraint::Stage;
 use crate::model::Formulation;
 use crate::profile::Phase;
@@ -63,7 +65,11 @@ pub(crate) fn step(
     let last = method.stages.len() - 1;
     let mut begin = 0.0;
     for (i, rule) in method.stages.iter().enumerate() {
-        simulation.velocity_gradient();
+        if simulation.scheme.formulation != Formulation::Displacement {
+            simulation.velocity_gradient();
+        } else {
+            simulation.keep_velocity_gradient();
+        }
         simulation.finished(Phase::Gradient);
         simulation.time = time + begin * dt;
         if i == last && method.lever_at_end {
@@ -213,14 +219,13 @@ impl Simulation {
                 *j = start.jacobian[a] * share + *j * rest;
             },
         );
-        parallel::for_each_pair(
-            &mut state.deformation_gradient,
-            &mut state.cofactor,
-            |q, f, h| {
-                *f = start.deformation_gradient[q] * share + *f * rest;
-                *h = start.cofactor[q] * share + *h * rest;
-            },
-        );
+        let average = |tensors: &mut [Mat3], start: &[Mat3]| {
+            parallel::for_each(tensors, |q, tensor| {
+                *tensor = start[q] * share + *tensor * rest
+            });
+        };
+        average(&mut state.deformation_gradient, &start.deformation_gradient);
+        average(&mut state.cofactor, &start.cofactor);
         self.evaluate_dependent_strains();
     }
 

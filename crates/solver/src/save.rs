@@ -384,6 +384,7 @@ impl Simulation {
                 });
             }
         }
+        self.work.stretch_bounds.are_fresh = false;
         self.time = saved.time;
         self.dt = saved.time_step;
         self.step = saved.step;

@@ -79,7 +79,7 @@ impl Simulation {
                     .map(move |velocity| velocity * density)
             })
             .collect();
-        let mut state = State::undeformed(&reference, momentum);
+        let mut state = State::undeformed(&reference, &model.scheme, momentum);
         for (input, body) in model.bodies.iter().zip(&reference.bodies) {
             state.temperature[body.particles.clone()].copy_from_slice(&input.initial_temperature);
         }
@@ -241,18 +241,27 @@ impl Simulation {
         }
     }
 
-    /// G of the present momenta, where anything asks for it.
-    pub(crate) fn velocity_gradient(&mut self) {
-        if self.scheme.formulation == Formulation::Displacement
-            && self.scheme.stabilisation.upwind == 0.0
-        {
-            return;
+    /// Whether something beside the drift of the leapfrog asks for G, or knows it already.
+    pub(crate) fn keeps_velocity_gradient(&self) -> bool {
+        let stabilisation = &self.scheme.stabilisation;
+        self.eulerian.is_some() || stabilisation.upwind != 0.0 || stabilisation.hourglass != 0.0
+    }
+
+    /// G of the present momenta where it is kept; the drift works it out for itself elsewhere.
+    pub(crate) fn keep_velocity_gradient(&mut self) {
+        if self.keeps_velocity_gradient() {
+            self.velocity_gradient();
         }
+    }
+
+    /// G of the present momenta.
+    pub(crate) fn velocity_gradient(&mut self) {
         if let Some(kernels) = &mut self.eulerian {
             kernels.velocity_gradient(&self.reference, &self.state, &mut self.work);
             return;
         }
-        strain::velocity_gradient(&self.reference, &self.state, &mut self.work);
+        strain::pad_momenta(&self.state, &mut self.work);
+        strain::velocity_gradient(&self.reference, &mut self.work);
     }
 
     /// Internal force, stabilisation and loads of the present state; the torque of the internal

@@ -2,10 +2,13 @@
 
 use jstsph_contact::{CachedGap, Exchange};
 use jstsph_material::ROOM_TEMPERATURE;
-use jstsph_tensor::{Mat3, Vec3};
+use std::ops::Range;
 
-use crate::model::Quadrature;
-use crate::reference::Reference;
+use jstsph_tensor::lanes::TILE;
+use jstsph_tensor::{Mat3, Vec3, cofactor, double_dot};
+
+use crate::model::{Formulation, Integrator, Quadrature, Scheme};
+use crate::reference::{BodyReference, Reference};
 
 /// The unknowns of the mixed scheme: x, p and J of the particles, F and H of the evaluation points.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,21 +24,23 @@ pub struct State {
     pub temperature: Vec<f64>,
     /// Deformation gradient F of the points.
     pub deformation_gradient: Vec<Mat3>,
-    /// Cofactor H of the points.
+    /// Cofactor H of the points; empty where it is cof F at all times: with the leapfrog, which advances
+    /// it exactly, and in the formulations without an H of its own.
     pub cofactor: Vec<Mat3>,
 }
 
 impl State {
     /// The undeformed state with the given momenta, at room temperature.
-    pub(crate) fn undeformed(reference: &Reference, momentum: Vec<Vec3>) -> Self {
+    pub(crate) fn undeformed(reference: &Reference, scheme: &Scheme, momentum: Vec<Vec3>) -> Self {
         let points = reference.point_volume.len();
+        let cofactors = if keeps_cofactor(scheme) { points } else { 0 };
         Self {
             position: reference.position.clone(),
             momentum,
             temperature: vec![ROOM_TEMPERATURE; reference.position.len()],
             jacobian: vec![1.0; reference.position.len()],
             deformation_gradient: vec![Mat3::identity(); points],
-            cofactor: vec![Mat3::identity(); points],
+            cofactor: vec![Mat3::identity(); cofactors],
         }
     }
 
@@ -49,6 +54,64 @@ impl State {
             .copy_from_slice(&other.deformation_gradient);
         self.cofactor.copy_from_slice(&other.cofactor);
     }
+
+    /// H of a point, wherever it comes from.
+    ///
+    /// # Panics
+    /// If there is no such point.
+    #[must_use]
+    pub fn cofactor_at(&self, point: usize) -> Mat3 {
+        let all = self.deformation(0..self.deformation_gradient.len());
+        all.cofactor(point)
+    }
+
+    /// F and H of a run of points.
+    pub(crate) fn deformation(&self, points: Range<usize>) -> Deformation<'_> {
+        Deformation {
+            cofactor: self.cofactor.get(points.clone()).unwrap_or_default(),
+            gradient: &self.deformation_gradient[points],
+        }
+    }
+}
+
+/// Whether H is integrated, and is cof F only up to the order of the method.
+fn keeps_cofactor(scheme: &Scheme) -> bool {
+    scheme.formulation == Formulation::MomentumGradientCofactorJacobian
+        && scheme.integrator != Integrator::Leapfrog
+}
+
+/// F and H of some points.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Deformation<'a> {
+    pub(crate) gradient: &'a [Mat3],
+    /// H where it is integrated, else nothing.
+    pub(crate) cofactor: &'a [Mat3],
+}
+
+impl Deformation<'_> {
+    /// H.
+    #[inline]
+    pub(crate) fn cofactor(&self, q: usize) -> Mat3 {
+        match self.cofactor.get(q) {
+            Some(cofactor) => *cofactor,
+            None => cofactor(&self.gradient[q]),
+        }
+    }
+
+    /// H, and det F by F and H, ⅓ H : F.
+    #[inline]
+    pub(crate) fn cofactor_and_determinant(&self, q: usize) -> (Mat3, f64) {
+        let cofactor = self.cofactor(q);
+        (cofactor, double_dot(&cofactor, &self.gradient[q]) / 3.0)
+    }
+
+    /// The points of a run.
+    pub(crate) fn of(&self, points: Range<usize>) -> Self {
+        Self {
+            cofactor: self.cofactor.get(points.clone()).unwrap_or_default(),
+            gradient: &self.gradient[points],
+        }
+    }
 }
 
 /// Buffers of one evaluation of the right-hand side; allocated once.
@@ -58,6 +121,8 @@ pub(crate) struct Workspace {
     pub(crate) padded_momentum: Vec<[f64; 4]>,
     /// G = grad(p/ρ) at the points, 1/s.
     pub(crate) velocity_gradient: Vec<Mat3>,
+    /// Bounds of the smallest stretches, left by the drift of the leapfrog.
+    pub(crate) stretch_bounds: StretchBounds,
     /// Change of volume of a point over the step or per second, see the strain pass.
     pub(crate) volume_change: Vec<f64>,
     /// V_q P_q at the points, N m.
@@ -127,8 +192,34 @@ impl Workspace {
             particle_deformation_gradient: vec![Mat3::zeros(); of_bonds],
             hourglass_stress: Vec::new(),
             hourglass_point_stress: Vec::new(),
+            stretch_bounds: StretchBounds::new(reference),
             ..Self::of_strains(reference)
         }
+    }
+}
+
+/// Bounds of 1/λ² of the points, the largest of every tile: what the next time step looks at first.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct StretchBounds {
+    /// One for each tile of the points of each body; not a number where a strain is not finite.
+    pub(crate) bodies: Vec<Vec<f64>>,
+    /// Whether they are those of the present F.
+    pub(crate) are_fresh: bool,
+}
+
+impl StretchBounds {
+    fn new(reference: &Reference) -> Self {
+        let tiles = |body: &BodyReference| vec![f64::NAN; body.points.len().div_ceil(TILE)];
+        Self {
+            bodies: reference.bodies.iter().map(tiles).collect(),
+            are_fresh: false,
+        }
+    }
+
+    /// Those of a body, if they are fresh.
+    pub(crate) fn of(&self, body: usize) -> Option<&[f64]> {
+        let bounds = self.bodies.get(body).filter(|_| self.are_fresh);
+        bounds.map(Vec::as_slice)
     }
 }
 

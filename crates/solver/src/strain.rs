@@ -1,7 +1,8 @@
 //! Strain measures: velocity gradient (3.11a) and the evolution of F, H and J (3.14):
 //! `[eq:strain]`, `[eq:cofactor]`, `[eq:jacobian]`; with bonds `[eq:bond-volume]`.
 
-use jstsph_tensor::{Mat3, cofactor, double_dot, tensor_cross};
+use jstsph_tensor::lanes::TILE;
+use jstsph_tensor::{Mat3, Vec3, cofactor, double_dot, tensor_cross};
 
 use crate::local_steps::{Groups, Part};
 use crate::model::{Formulation, Quadrature};
@@ -11,6 +12,8 @@ use crate::state::{State, Workspace};
 
 mod drift;
 
+use drift::{Drift, Rates};
+
 /// Which strain measures are integrated, and where they live.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Strains {
@@ -18,58 +21,67 @@ pub(crate) struct Strains {
     pub(crate) quadrature: Quadrature,
 }
 
-/// G_q = Σ_c (p_c/ρ) ⊗ B_qc at every point, 1/s.
-pub(crate) fn velocity_gradient(reference: &Reference, state: &State, work: &mut Workspace) {
+/// The momenta with a fourth number, zero.
+pub(crate) fn pad_momenta(state: &State, work: &mut Workspace) {
+    let momentum = &state.momentum;
+    parallel::fill(&mut work.padded_momentum, |a| padded(&momentum[a]));
+}
+
+/// A vector with a fourth number, zero.
+#[inline]
+pub(crate) fn padded(vector: &Vec3) -> [f64; 4] {
+    [vector.x, vector.y, vector.z, 0.0]
+}
+
+/// G_q = Σ_c (p_c/ρ) ⊗ B_qc at every point, 1/s, by the padded momenta.
+pub(crate) fn velocity_gradient(reference: &Reference, work: &mut Workspace) {
     for body in &reference.bodies {
-        let range = body.particles.clone();
-        let inverse_density = 1.0 / body.density;
-        let momentum = &state.momentum[range.clone()];
-        let padded = &mut work.padded_momentum[range];
-        parallel::fill(padded, |a| {
-            [momentum[a].x, momentum[a].y, momentum[a].z, 0.0]
-        });
-        let padded = &*padded;
+        let field = &work.padded_momentum[body.particles.clone()];
         let gradients = &mut work.velocity_gradient[body.points.clone()];
         parallel::for_each_run(gradients, |offset, gradients| {
             body.gradient
-                .scaled_gradients(offset, padded, inverse_density, gradients);
+                .scaled_gradients(offset, field, 1.0 / body.density, gradients);
         });
     }
 }
 
-/// Advances F, H and J by `dt` with the velocity gradient of mid-step: the drift of the leapfrog.
+/// Advances F and J by `dt` with the velocity gradient of mid-step: the drift of the leapfrog. G is that
+/// of the padded momenta, or what the workspace holds where `gradients_are_kept`.
 ///
-/// With constant G, F is linear and H quadratic in time; H is advanced exactly (it stays the
-/// cofactor of F), and J by Simpson's rule, exact for the cubic det F. With bonds, ln J of a
-/// particle grows by the shares of its bonds' ∫ tr(G F⁻¹) dt, midpoint rule.
+/// With constant G, F is linear in time, H quadratic and det F cubic, and all are exact: H is cof F at all
+/// times and needs no place. With particles J grows by the change of det F; with bonds ln J of a particle
+/// by the shares of its bonds' ∫ tr(G F⁻¹) dt, midpoint rule. Leaves bounds of the smallest stretches
+/// for the next time step.
 pub(crate) fn drift(
     strains: Strains,
     reference: &Reference,
     state: &mut State,
     work: &mut Workspace,
-    dt: f64,
+    (dt, gradients_are_kept): (f64, bool),
 ) {
-    let Workspace {
-        velocity_gradient,
-        volume_change,
-        jacobian_dissipation,
-        ..
-    } = work;
     let bonds = strains.quadrature == Quadrature::Bonds;
-    let plane = reference.is_plane();
-    let step = drift::Drift { bonds, plane, dt };
-    parallel::for_each_chunk(
-        &mut state.deformation_gradient,
-        &mut state.cofactor,
-        volume_change,
-        |offset, f, h, change| {
-            let g = &velocity_gradient[offset..offset + f.len()];
-            step.advance(g, f, h, change);
-        },
-    );
-    for body in &reference.bodies {
-        let change = &volume_change[body.points.clone()];
-        let dissipation = &jacobian_dissipation[body.particles.clone()];
+    let step = Drift {
+        bonds,
+        plane: reference.is_plane(),
+        dt,
+    };
+    for (body, bounds) in reference.bodies.iter().zip(&mut work.stretch_bounds.bodies) {
+        let points = body.points.clone();
+        let rates = if gradients_are_kept {
+            Rates::Kept(&work.velocity_gradient[points.clone()])
+        } else {
+            Rates::of(body, &work.padded_momentum)
+        };
+        parallel::for_each_chunk_of(
+            (
+                &mut state.deformation_gradient[points.clone()],
+                &mut work.volume_change[points.clone()],
+            ),
+            (bounds, TILE),
+            |first, f, change, bounds| step.advance(&rates, first, f, change, bounds),
+        );
+        let change = &work.volume_change[points];
+        let dissipation = &work.jacobian_dissipation[body.particles.clone()];
         parallel::for_each(
             &mut state.jacobian[body.particles.clone()],
             |a, jacobian| {
@@ -82,11 +94,12 @@ pub(crate) fn drift(
             },
         );
     }
+    work.stretch_bounds.are_fresh = true;
     constrain(strains, reference, state);
 }
 
-/// [`drift`] of F and H of a part of the points with bonds, by their velocity gradients; their changes
-/// of volume are left in the workspace.
+/// [`drift`] of F of a part of the points with bonds, by the padded momenta; their changes of volume
+/// are left in the workspace.
 pub(crate) fn drift_part(
     reference: &Reference,
     (groups, fine): (&[Groups], bool),
@@ -94,24 +107,32 @@ pub(crate) fn drift_part(
     work: &mut Workspace,
     dt: f64,
 ) {
-    let step = drift::Drift {
+    let step = Drift {
         bonds: true,
         plane: reference.is_plane(),
         dt,
     };
-    for (body, groups) in reference.bodies.iter().zip(groups) {
+    let bodies = reference.bodies.iter().zip(groups);
+    for ((body, groups), bounds) in bodies.zip(&mut work.stretch_bounds.bodies) {
         let points = body.points.clone();
-        let gradients = &work.velocity_gradient[points.clone()];
+        let rates = Rates::of(body, &work.padded_momentum);
         let out = (
             &mut state.deformation_gradient[points.clone()],
-            &mut state.cofactor[points.clone()],
             &mut work.volume_change[points],
         );
-        groups
-            .fine
-            .for_each_chunk(fine, out, |first, f, h, change| {
-                step.advance(&gradients[first..first + f.len()], f, h, change);
-            });
+        parallel::for_each_chunk_of(out, (bounds, TILE), |offset, f, change, bounds| {
+            for run in groups.fine.runs(offset..offset + f.len(), fine) {
+                let here = run.start - offset..run.end - offset;
+                let tiles = here.start / TILE..here.end.div_ceil(TILE);
+                step.advance(
+                    &rates,
+                    run.start,
+                    &mut f[here.clone()],
+                    &mut change[here],
+                    &mut bounds[tiles],
+                );
+            }
+        });
     }
 }
 
@@ -146,21 +167,29 @@ pub(crate) fn euler(
         ..
     } = work;
     let bonds = strains.quadrature == Quadrature::Bonds;
-    parallel::for_each_triple(
-        &mut state.deformation_gradient,
-        &mut state.cofactor,
-        volume_change,
-        |q, f, h, rate| {
+    let rate_of = |f: &Mat3, h: &Mat3, g: &Mat3| {
+        if bonds {
+            3.0 * double_dot(h, g) / double_dot(h, f)
+        } else {
+            double_dot(h, g)
+        }
+    };
+    let gradients = &mut state.deformation_gradient;
+    if state.cofactor.is_empty() {
+        parallel::for_each_pair(gradients, volume_change, |q, f, rate| {
             let g = &velocity_gradient[q];
-            *rate = if bonds {
-                3.0 * double_dot(h, g) / double_dot(h, f)
-            } else {
-                double_dot(h, g)
-            };
+            *rate = rate_of(f, &cofactor(f), g);
+            *f += g * dt;
+        });
+    } else {
+        let cofactors = &mut state.cofactor;
+        parallel::for_each_triple(gradients, cofactors, volume_change, |q, f, h, rate| {
+            let g = &velocity_gradient[q];
+            *rate = rate_of(f, h, g);
             *h += tensor_cross(f, g) * dt;
             *f += g * dt;
-        },
-    );
+        });
+    }
     for body in &reference.bodies {
         let rate = &volume_change[body.points.clone()];
         let dissipation = &jacobian_dissipation[body.particles.clone()];
@@ -179,8 +208,7 @@ pub(crate) fn euler(
     constrain(strains, reference, state);
 }
 
-/// F = 1 + grad(x − X) with the operator of (3.6), H = cof F and J = det F: the strains of the
-/// displacement formulation (Ba & Gakwaya 2018). [eq:displacement-gradient]
+/// F = 1 + grad(x − X) with the operator of (3.6) and J = det F: the strains of the displacement formulation (Ba & Gakwaya 2018). [eq:displacement-gradient]
 pub(crate) fn from_positions(
     strains: Strains,
     reference: &Reference,
@@ -200,20 +228,16 @@ pub(crate) fn from_positions(
     constrain(strains, reference, state);
 }
 
-/// Evaluates the measures that the reduced systems do not integrate: H = cof F and J = det F.
+/// Evaluates J where it is not integrated: the mean of det F.
 pub(crate) fn constrain(strains: Strains, reference: &Reference, state: &mut State) {
-    if strains.formulation == Formulation::MomentumGradientCofactorJacobian {
+    if strains.formulation.integrates_jacobian() {
         return;
     }
-    let gradients: &[Mat3] = &state.deformation_gradient;
-    parallel::fill(&mut state.cofactor, |q| cofactor(&gradients[q]));
-    if !strains.formulation.integrates_jacobian() {
-        for body in &reference.bodies {
-            let gradients = &gradients[body.points.clone()];
-            parallel::fill(&mut state.jacobian[body.particles.clone()], |a| {
-                body.shares.mean(a, |q| gradients[q].determinant())
-            });
-        }
+    for body in &reference.bodies {
+        let gradients = &state.deformation_gradient[body.points.clone()];
+        parallel::fill(&mut state.jacobian[body.particles.clone()], |a| {
+            body.shares.mean(a, |q| gradients[q].determinant())
+        });
     }
 }
 

@@ -6,13 +6,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use jstsph_material::{
     Block, BlockReader, BlockVisitor, History, Kinematics, Material, MaterialBlock, MaterialError,
 };
-use jstsph_tensor::{Mat3, double_dot};
+use jstsph_tensor::Mat3;
 
 use crate::local_steps::{Groups, Part};
 use crate::model::Quadrature;
 use crate::parallel;
 use crate::reference::{BodyReference, Reference};
-use crate::state::{State, Workspace};
+use crate::state::{Deformation, State, Workspace};
 use crate::strain::Strains;
 
 mod tile;
@@ -26,8 +26,7 @@ struct Points<'a> {
     body: &'a BodyReference,
     jacobian: &'a [f64],
     temperature: &'a [f64],
-    deformation_gradient: &'a [Mat3],
-    cofactor: &'a [Mat3],
+    deformation: Deformation<'a>,
     volume: &'a [f64],
     dt: f64,
 }
@@ -43,18 +42,12 @@ impl Points<'_> {
         self.strains.quadrature == Quadrature::Particles
     }
 
-    /// det F by the unknowns F and H, ⅓ H : F.
-    #[inline]
-    fn determinant(&self, q: usize) -> f64 {
-        double_dot(&self.cofactor[q], &self.deformation_gradient[q]) / 3.0
-    }
-
     /// Kinematics of a point: J is its own, or the geometric mean of those of its ends, so that a
     /// logarithmic pressure of the point is the mean of its ends' pressures.
     #[inline]
     fn kinematics(&self, q: usize) -> Kinematics {
         Kinematics {
-            deformation_gradient: self.deformation_gradient[q],
+            deformation_gradient: self.deformation.gradient[q],
             jacobian: self.jacobian(q),
             dt: self.dt,
             temperature: self.temperature(q),
@@ -64,7 +57,7 @@ impl Points<'_> {
     #[inline]
     fn jacobian(&self, q: usize) -> f64 {
         if self.without_jacobian() {
-            return self.determinant(q);
+            return self.deformation.cofactor_and_determinant(q).1;
         }
         let [a, b] = self.body.ends[q];
         let (ja, jb) = (self.jacobian[a as usize], self.jacobian[b as usize]);
@@ -213,12 +206,13 @@ impl<M: Material> PointPass<'_, M> {
         stress.m22 += pressure;
         stress.m33 += pressure;
         // [eq:piola]: P = σ H with σ = τ/J (A.4); with bonds τ F⁻ᵀ, conjugate to tr(G F⁻¹).
+        let (cofactor, determinant) = points.deformation.cofactor_and_determinant(q);
         let jacobian = if points.at_particles() {
             now.jacobian
         } else {
-            points.determinant(q)
+            determinant
         };
-        *scaled_stress = stress * points.cofactor[q] * (points.volume[q] / jacobian);
+        *scaled_stress = stress * cofactor * (points.volume[q] / jacobian);
         *plastic_work = response.plastic_work;
         *candidate = response.history;
     }
@@ -313,8 +307,7 @@ fn points_of<'a>(
         body,
         jacobian: &state.jacobian[body.particles.clone()],
         temperature: &state.temperature[body.particles.clone()],
-        deformation_gradient: &state.deformation_gradient[body.points.clone()],
-        cofactor: &state.cofactor[body.points.clone()],
+        deformation: state.deformation(body.points.clone()),
         volume: &reference.point_volume[body.points.clone()],
         dt,
     }

@@ -3,14 +3,14 @@
 use std::ops::Range;
 
 use jstsph_tensor::lanes::TILE;
-use jstsph_tensor::{Mat3, double_dot, largest_eigenvalue};
+use jstsph_tensor::{Mat3, cofactor, double_dot, largest_eigenvalue};
 
 use crate::local_steps::Groups;
 use crate::parallel;
 use crate::reference::{BodyReference, Reference};
-use crate::state::State;
+use crate::state::{Deformation, State, StretchBounds};
 
-mod bound;
+pub(crate) mod bound;
 mod choice;
 
 pub(crate) use choice::AcousticLimit;
@@ -48,16 +48,11 @@ fn inverse_cauchy_green(deformation_gradient: &Mat3, cofactor: &Mat3) -> Mat3 {
 
 /// The largest 1/λ² of a range of at most [`parallel::LEAF`] points, the first of them where several
 /// have it; not a number, at the first such point, where a strain is not finite.
-fn steepest_of(
-    plane: bool,
-    range: Range<usize>,
-    gradients: &[Mat3],
-    cofactors: &[Mat3],
-) -> Steepest {
+fn steepest_of(plane: bool, range: Range<usize>, deformation: Deformation<'_>) -> Steepest {
     let start = range.start;
     let mut buffer = [0.0; parallel::LEAF];
     let bounds = &mut buffer[..range.len()];
-    bound::evaluate(plane, &gradients[range.clone()], &cofactors[range], bounds);
+    bound::evaluate(plane, deformation.of(range), bounds);
     let mut largest = 0;
     for (k, bound) in bounds.iter().enumerate() {
         if !bound.is_finite() {
@@ -72,8 +67,11 @@ fn steepest_of(
     }
     // The point with the largest bound first: few others then need their value.
     let value = |k: usize| {
-        let (f, h) = (&gradients[start + k], &cofactors[start + k]);
-        largest_eigenvalue(&inverse_cauchy_green(f, h))
+        let (f, h) = (
+            &deformation.gradient[start + k],
+            deformation.cofactor(start + k),
+        );
+        largest_eigenvalue(&inverse_cauchy_green(f, &h))
     };
     let (mut best, mut at) = (value(largest), largest);
     for (k, bound) in bounds.iter().enumerate() {
@@ -101,47 +99,98 @@ fn steeper(a: Steepest, b: Steepest) -> Steepest {
     }
 }
 
+/// The largest 1/λ² of those tiles of a body that are `wanted`, by the bounds of all of them.
+fn steepest_by_bounds(
+    plane: bool,
+    deformation: Deformation<'_>,
+    bounds: &[f64],
+    wanted: impl Fn(usize) -> bool,
+) -> Option<Steepest> {
+    let of_tile = |tile: usize| {
+        let end = deformation.gradient.len().min((tile + 1) * TILE);
+        steepest_of(plane, tile * TILE..end, deformation)
+    };
+    // The first of the largest, or the first that is not finite.
+    let mut largest: Option<usize> = None;
+    for (tile, bound) in bounds.iter().enumerate() {
+        if !wanted(tile) {
+            continue;
+        }
+        if bound.is_nan() {
+            return Some(of_tile(tile));
+        }
+        if largest.is_none_or(|largest| *bound > bounds[largest]) {
+            largest = Some(tile);
+        }
+    }
+    let largest = largest?;
+    let mut best = of_tile(largest);
+    for (tile, bound) in bounds.iter().enumerate() {
+        if tile == largest || bound * BOUND_MARGIN < best.inverse_stretch_squared || !wanted(tile) {
+            continue;
+        }
+        let here = of_tile(tile);
+        best = if tile < largest {
+            steeper(here, best)
+        } else {
+            steeper(best, here)
+        };
+    }
+    Some(best)
+}
+
 /// Δt / CFL = min Δx λ_min / c_p over all points: compression makes waves faster in the reference
 /// configuration by one over the smallest principal stretch (3.17; the algorithm box's formula
-/// is garbled, docs/theory.md).
-pub(crate) fn stable_step(reference: &Reference, state: &State) -> StableStep {
+/// is garbled, docs/theory.md). Fresh `bounds` make it fast and change nothing.
+pub(crate) fn stable_step(
+    reference: &Reference,
+    state: &State,
+    bounds: &StretchBounds,
+) -> StableStep {
     let plane = reference.is_plane();
-    smallest(reference, |_, body| {
-        let gradients = &state.deformation_gradient[body.points.clone()];
-        let cofactors = &state.cofactor[body.points.clone()];
-        parallel::reduce(
-            gradients.len(),
-            &|range| steepest_of(plane, range, gradients, cofactors),
-            &steeper,
-        )
+    smallest(reference, |index, body| {
+        let deformation = state.deformation(body.points.clone());
+        let by_bounds = bounds
+            .of(index)
+            .and_then(|bounds| steepest_by_bounds(plane, deformation, bounds, |_| true));
+        by_bounds.unwrap_or_else(|| {
+            parallel::reduce(
+                body.points.len(),
+                &|range| steepest_of(plane, range, deformation),
+                &steeper,
+            )
+        })
     })
 }
 
 /// [`stable_step`] of a part of the points; infinite when it has none.
 pub(crate) fn stable_step_of_part(
     reference: &Reference,
-    state: &State,
+    (state, bounds): (&State, &StretchBounds),
     (groups, fine): (&[Groups], bool),
 ) -> StableStep {
     let plane = reference.is_plane();
+    let none = Steepest {
+        inverse_stretch_squared: 0.0,
+        point: 0,
+    };
     smallest(reference, |index, body| {
-        let gradients = &state.deformation_gradient[body.points.clone()];
-        let cofactors = &state.cofactor[body.points.clone()];
+        let deformation = state.deformation(body.points.clone());
+        let count = body.points.len();
         let tiles = &groups[index].fine;
-        let none = Steepest {
-            inverse_stretch_squared: 0.0,
-            point: 0,
-        };
+        if let Some(bounds) = bounds.of(index) {
+            let wanted = |tile: usize| tiles.contains(tile * TILE) == fine;
+            return steepest_by_bounds(plane, deformation, bounds, wanted).unwrap_or(none);
+        }
         parallel::reduce(
-            gradients.len().div_ceil(TILE),
+            count.div_ceil(TILE),
             &|range| {
-                let points = range.start * TILE..(range.end * TILE).min(gradients.len());
+                let points = range.start * TILE..(range.end * TILE).min(count);
                 let mut steepest = none;
                 for run in tiles.runs(points, fine) {
                     for first in run.clone().step_by(parallel::LEAF) {
                         let piece = first..run.end.min(first + parallel::LEAF);
-                        let here = steepest_of(plane, piece, gradients, cofactors);
-                        steepest = steeper(steepest, here);
+                        steepest = steeper(steepest, steepest_of(plane, piece, deformation));
                     }
                 }
                 steepest
@@ -181,14 +230,13 @@ fn smallest(
 }
 
 /// Δx λ_min / c of one point.
-pub(crate) fn point_time(body: &BodyReference, gradient: &Mat3, cofactor: &Mat3) -> f64 {
-    let inverse = inverse_cauchy_green(gradient, cofactor);
-    body.spacing / (body.wave_speed * largest_eigenvalue(&inverse).sqrt())
+pub(crate) fn point_time(body: &BodyReference, deformation_gradient: &Mat3) -> f64 {
+    body.spacing * smallest_stretch(deformation_gradient) / body.wave_speed
 }
 
 /// Smallest principal stretch of a point.
 pub(crate) fn smallest_stretch(deformation_gradient: &Mat3) -> f64 {
-    let cofactor = jstsph_tensor::cofactor(deformation_gradient);
+    let cofactor = cofactor(deformation_gradient);
     1.0 / largest_eigenvalue(&inverse_cauchy_green(deformation_gradient, &cofactor)).sqrt()
 }
 
@@ -200,21 +248,17 @@ mod tests {
 
     /// Two bodies of different material and more points than one leaf of the reduction has.
     fn two_bodies() -> (Reference, State) {
-        let mut model = model(
-            [10, 10, 6],
-            elastic(),
-            scheme(Quadrature::Bonds, Integrator::Leapfrog),
-        );
+        let scheme = scheme(Quadrature::Bonds, Integrator::Leapfrog);
+        let mut model = model([10, 10, 6], elastic(), scheme);
         model.bodies.push(body("second", [12, 9, 13], copper()));
         let reference = Reference::new(&model).unwrap();
         let momentum = vec![jstsph_tensor::Vec3::zeros(); reference.position.len()];
-        let state = State::undeformed(&reference, momentum);
+        let state = State::undeformed(&reference, &scheme, momentum);
         (reference, state)
     }
 
     fn deform(state: &mut State, q: usize, f: Mat3) {
         state.deformation_gradient[q] = f;
-        state.cofactor[q] = jstsph_tensor::cofactor(&f);
     }
 
     /// The step and its point with the largest eigenvalue of every point computed.
@@ -223,8 +267,8 @@ mod tests {
         for body in &reference.bodies {
             let mut largest = (0.0, 0);
             for q in body.points.clone() {
-                let inverse =
-                    inverse_cauchy_green(&state.deformation_gradient[q], &state.cofactor[q]);
+                let f = &state.deformation_gradient[q];
+                let inverse = inverse_cauchy_green(f, &cofactor(f));
                 let value = largest_eigenvalue(&inverse);
                 if value > largest.0 {
                     largest = (value, q);
@@ -242,6 +286,7 @@ mod tests {
     fn skipping_candidates_never_changes_the_step() {
         let (reference, mut state) = two_bodies();
         let mut random = Random(53);
+        let stale = StretchBounds::default();
         for trial in 0..60 {
             // From nearly rigid (all points almost equal) to wildly different stretches.
             let amplitude: f64 = [0.0, 1e-15, 1e-9, 1e-3, 0.3, 0.6][trial % 6];
@@ -258,7 +303,7 @@ mod tests {
             }
             let expected = brute_force(&reference, &state);
             for threads in [1, 3] {
-                let found = in_pool(threads, || stable_step(&reference, &state));
+                let found = in_pool(threads, || stable_step(&reference, &state, &stale));
                 assert_eq!(
                     found.time.to_bits(),
                     expected.0.to_bits(),
@@ -273,7 +318,7 @@ mod tests {
     fn the_body_with_the_shorter_step_decides() {
         let (reference, mut state) = two_bodies();
         let second = &reference.bodies[1];
-        let undeformed = stable_step(&reference, &state);
+        let undeformed = stable_step(&reference, &state, &StretchBounds::default());
         assert!(
             (undeformed.time - 1e-3 / second.wave_speed).abs() < 1e-15 * undeformed.time.max(1.0)
         );
@@ -286,7 +331,7 @@ mod tests {
             77,
             Mat3::from_diagonal(&jstsph_tensor::Vec3::new(1.0, 0.1, 1.0)),
         );
-        let found = stable_step(&reference, &state);
+        let found = stable_step(&reference, &state, &StretchBounds::default());
         assert_eq!(found.point, 77);
         assert!((found.stretch - 0.1).abs() < 1e-15);
         let expected = 0.1 * 1e-3 / reference.bodies[0].wave_speed;
@@ -297,6 +342,7 @@ mod tests {
     fn the_first_point_that_is_not_finite_is_found() {
         let (reference, start) = two_bodies();
         let points = reference.point_volume.len();
+        let stale = StretchBounds::default();
         for places in [vec![0], vec![points - 1], vec![900, 2000, 700], vec![1111]] {
             for value in [f64::NAN, f64::INFINITY] {
                 let mut state = start.clone();
@@ -306,7 +352,7 @@ mod tests {
                 // A tiny stretch elsewhere must not hide it.
                 deform(&mut state, 5, Mat3::identity() * 1e-3);
                 for threads in [1, 3] {
-                    let found = in_pool(threads, || stable_step(&reference, &state));
+                    let found = in_pool(threads, || stable_step(&reference, &state, &stale));
                     assert!(found.time.is_nan(), "{places:?}");
                     assert_eq!(found.point, *places.iter().min().unwrap());
                 }

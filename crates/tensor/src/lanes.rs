@@ -120,6 +120,13 @@ impl<S: Simd> Lanes<S> {
         self.simd.reduce_max_f64s(self.values)
     }
 
+    /// The sum of the lanes, in an order that depends on the machine: for what is exact, as zeros are.
+    #[inline(always)]
+    #[must_use]
+    pub fn sum(self) -> f64 {
+        self.simd.reduce_sum_f64s(self.values)
+    }
+
     /// |x|.
     #[inline(always)]
     #[must_use]
@@ -336,12 +343,13 @@ impl TensorTile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{double_dot, tensor_cross};
+    use crate::{cofactor, double_dot, tensor_cross};
 
     struct Products<'a> {
         a: &'a TensorTile,
         b: &'a TensorTile,
         cross: &'a mut TensorTile,
+        cofactors: &'a mut TensorTile,
         dot: &'a mut [f64; TILE],
         plane: bool,
     }
@@ -365,6 +373,7 @@ mod tests {
         fn products<S: Simd, T: LaneTensor<S>>(&mut self, simd: S, pack: usize) {
             let (a, b) = (T::load(simd, self.a, pack), T::load(simd, self.b, pack));
             a.cross(&b).store(self.cross, pack);
+            a.cofactor().store(self.cofactors, pack);
             a.double_dot(&b).store(self.dot, pack);
         }
     }
@@ -382,7 +391,8 @@ mod tests {
         };
         let a: Vec<_> = (0..TILE).map(|i| sample(i, 0.1)).collect();
         let b: Vec<_> = (0..TILE).map(|i| sample(i, 2.3)).collect();
-        let (mut at, mut bt, mut cross) = (TensorTile::ZERO, TensorTile::ZERO, TensorTile::ZERO);
+        let (mut at, mut bt) = (TensorTile::ZERO, TensorTile::ZERO);
+        let (mut cross, mut cofactors) = (TensorTile::ZERO, TensorTile::ZERO);
         for (tile, tensors) in [(&mut at, &a), (&mut bt, &b)] {
             if plane {
                 tile.read_plane(tensors);
@@ -395,18 +405,23 @@ mod tests {
             a: &at,
             b: &bt,
             cross: &mut cross,
+            cofactors: &mut cofactors,
             dot: &mut dot,
             plane,
         };
         vectorised(products);
-        let mut crossed = vec![Mat3::zeros(); TILE];
-        if plane {
-            cross.write_plane(&mut crossed);
-        } else {
-            cross.write(&mut crossed);
-        }
+        let [crossed, cofactors] = [cross, cofactors].map(|tile| {
+            let mut tensors = vec![Mat3::zeros(); TILE];
+            if plane {
+                tile.write_plane(&mut tensors);
+            } else {
+                tile.write(&mut tensors);
+            }
+            tensors
+        });
         for i in 0..TILE {
             assert_eq!(crossed[i], tensor_cross(&a[i], &b[i]));
+            assert_eq!(cofactors[i], cofactor(&a[i]));
             assert_eq!(dot[i], double_dot(&a[i], &b[i]));
         }
     }

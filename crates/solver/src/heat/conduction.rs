@@ -2,10 +2,11 @@
 
 use jstsph_material::Property;
 use jstsph_sph::{GradientOperator, Support};
-use jstsph_tensor::{Mat3, Vec3, cofactor, double_dot};
+use jstsph_tensor::{Vec3, cofactor};
 
 use crate::model::{ModelBody, Quadrature};
 use crate::reference::BodyReference;
+use crate::state::Deformation;
 use crate::{SolverError, parallel};
 
 /// How heat flows between the particles of one body: through the midpoints of its bonds, with the
@@ -34,8 +35,7 @@ pub(crate) struct Conductor<'a> {
     pub(crate) body: &'a BodyReference,
     pub(crate) quadrature: Quadrature,
     pub(crate) temperature: &'a [f64],
-    pub(crate) deformation_gradient: &'a [Mat3],
-    pub(crate) cofactor: &'a [Mat3],
+    pub(crate) deformation: Deformation<'a>,
     pub(crate) volume: &'a [f64],
     pub(crate) conductivity: &'a Property,
 }
@@ -104,12 +104,10 @@ impl Conduction {
             let mean = 0.5 * (of.temperature[a] + of.temperature[b]);
             let gradient = operator.scalar_gradient_at(q, of.temperature);
             let (h, jacobian) = match of.quadrature {
-                Quadrature::Bonds => {
-                    let h = of.cofactor[q];
-                    (h, double_dot(&h, &of.deformation_gradient[q]) / 3.0)
-                }
+                Quadrature::Bonds => of.deformation.cofactor_and_determinant(q),
                 Quadrature::Particles => {
-                    let f = (of.deformation_gradient[a] + of.deformation_gradient[b]) * 0.5;
+                    let gradient = of.deformation.gradient;
+                    let f = (gradient[a] + gradient[b]) * 0.5;
                     (cofactor(&f), f.determinant())
                 }
             };

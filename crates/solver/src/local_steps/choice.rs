@@ -115,8 +115,7 @@ impl Choice {
         } = simulation;
         for body in &reference.bodies {
             for q in body.points.clone() {
-                let (f, h) = (&state.deformation_gradient[q], &state.cofactor[q]);
-                self.point_time[q] = point_time(body, f, h);
+                self.point_time[q] = point_time(body, &state.deformation_gradient[q]);
             }
         }
         let smallest = self.point_time.iter().fold(f64::INFINITY, |a, b| a.min(*b));
@@ -278,6 +277,6 @@ pub(super) type StretchLimits = [StableStep; 2];
 
 /// The limits by stretch at the present state.
 pub(super) fn stretch_limits(simulation: &Simulation, groups: &[Groups]) -> StretchLimits {
-    let (reference, state) = (&simulation.reference, &simulation.state);
-    [true, false].map(|fine| stable_step_of_part(reference, state, (groups, fine)))
+    let state = (&simulation.state, &simulation.work.stretch_bounds);
+    [true, false].map(|fine| stable_step_of_part(&simulation.reference, state, (groups, fine)))
 }

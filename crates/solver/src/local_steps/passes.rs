@@ -1,6 +1,6 @@
 //! The passes of the parts of a step.
 
-use jstsph_tensor::{Mat3, Vec3, double_dot};
+use jstsph_tensor::{Mat3, Vec3};
 
 use super::{Groups, LocalSteps, Part};
 use crate::constraint::Stage;
@@ -8,7 +8,7 @@ use crate::leapfrog::{Kick, book};
 use crate::profile::Phase;
 use crate::reference::{BodyReference, Reference};
 use crate::simulation::Simulation;
-use crate::state::{Impulse, State, Workspace};
+use crate::state::{Deformation, Impulse, State};
 use crate::{SolverError, parallel, strain, stress};
 
 impl LocalSteps {
@@ -121,7 +121,7 @@ impl LocalSteps {
         }
     }
 
-    /// x of the moving particles and G of the fine points; `share` is one over the sub-steps.
+    /// x of the moving particles, and their padded momenta; `share` is one over the sub-steps.
     fn move_fine(&mut self, simulation: &mut Simulation, sub_step: f64, share: f64) {
         let Simulation {
             reference,
@@ -144,15 +144,14 @@ impl LocalSteps {
                     let momentum = &momentum[first..first + mean.len()];
                     for (k, p) in momentum.iter().enumerate() {
                         position[k] += p * per_momentum;
-                        padded[k] = [p.x, p.y, p.z, 0.0];
+                        padded[k] = strain::padded(p);
                         mean[k] += p * share;
                     }
                 });
-            velocity_gradient(body, groups, true, work);
         }
     }
 
-    /// F, H of the fine points, J of the particles whose J is fine.
+    /// F of the fine points, J of the particles whose J is fine.
     fn drift_fine(&mut self, simulation: &mut Simulation, sub_step: f64) {
         let Simulation {
             reference,
@@ -255,10 +254,11 @@ impl LocalSteps {
         )
         .map_err(|failure| simulation.constitutive(failure))?;
         self.join_stress(simulation);
+        simulation.work.stretch_bounds.are_fresh = true;
         Ok(())
     }
 
-    /// x of the other particles, and G of the other points by the mean momenta of the step.
+    /// x of the other particles; padded momenta, those of the moving particles by their means over the step.
     fn move_rest(&mut self, simulation: &mut Simulation, dt: f64) {
         let Simulation {
             reference,
@@ -283,11 +283,10 @@ impl LocalSteps {
                 let padded = &mut work.padded_momentum[range.clone()];
                 groups.moving.for_each_run(inside, padded, |first, padded| {
                     for (padded, p) in padded.iter_mut().zip(&momentum[first..]) {
-                        *padded = [p.x, p.y, p.z, 0.0];
+                        *padded = strain::padded(p);
                     }
                 });
             }
-            velocity_gradient(body, groups, false, work);
         }
     }
 
@@ -349,19 +348,6 @@ impl LocalSteps {
     }
 }
 
-/// G of the fine points of a body, or of the others, by the padded momenta.
-fn velocity_gradient(body: &BodyReference, groups: &Groups, fine: bool, work: &mut Workspace) {
-    let padded = &work.padded_momentum[body.particles.clone()];
-    let gradients = &mut work.velocity_gradient[body.points.clone()];
-    let inverse_density = 1.0 / body.density;
-    groups
-        .fine
-        .for_each_run(fine, gradients, |first, gradients| {
-            body.gradient
-                .scaled_gradients(first, padded, inverse_density, gradients);
-        });
-}
-
 /// The part of V P of fine points that acts in whole steps: the pressure of those ends whose J makes
 /// whole steps.
 struct SlowStress<'a> {
@@ -369,8 +355,7 @@ struct SlowStress<'a> {
     groups: &'a Groups,
     pressure: &'a [f64],
     volume: &'a [f64],
-    deformation_gradient: &'a [Mat3],
-    cofactor: &'a [Mat3],
+    deformation: Deformation<'a>,
 }
 
 impl<'a> SlowStress<'a> {
@@ -385,8 +370,7 @@ impl<'a> SlowStress<'a> {
             groups,
             pressure,
             volume: &reference.point_volume[body.points.clone()],
-            deformation_gradient: &state.deformation_gradient[body.points.clone()],
-            cofactor: &state.cofactor[body.points.clone()],
+            deformation: state.deformation(body.points.clone()),
         }
     }
 
@@ -403,9 +387,8 @@ impl<'a> SlowStress<'a> {
                 self.pressure[a]
             }
         });
-        let (f, h) = (&self.deformation_gradient[point], &self.cofactor[point]);
-        let determinant = double_dot(h, f) / 3.0;
+        let (cofactor, determinant) = self.deformation.cofactor_and_determinant(point);
         let stress = 0.5 * (pressures[0] + pressures[1]);
-        Some(h * (stress * self.volume[point] / determinant))
+        Some(cofactor * (stress * self.volume[point] / determinant))
     }
 }

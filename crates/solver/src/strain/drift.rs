@@ -1,10 +1,57 @@
-//! F, H and the change of volume of points over one step with constant G: point by point, and the
-//! same for many points at once.
+//! F and the change of volume of points over one step with constant G: point by point, and the same for
+//! many points at once.
 
+use jstsph_sph::GradientOperator;
 use jstsph_tensor::lanes::{
     LaneTensor, PlaneLanes, Simd, TILE, TensorLanes, TensorTile, WithSimd, vectorised,
 };
-use jstsph_tensor::{Mat3, double_dot, tensor_cross};
+use jstsph_tensor::{Mat3, cofactor, double_dot};
+
+use crate::reference::BodyReference;
+use crate::state::Deformation;
+use crate::time_step::bound;
+
+/// The velocity gradients of the points of a body.
+#[derive(Clone, Copy)]
+pub(super) enum Rates<'a> {
+    /// They have been evaluated before.
+    Kept(&'a [Mat3]),
+    /// Those of a field over particles, with the fourth numbers that vector loads want, times a factor.
+    Of {
+        operator: &'a GradientOperator,
+        field: &'a [[f64; 4]],
+        factor: f64,
+    },
+}
+
+impl<'a> Rates<'a> {
+    /// G of a body by the padded momenta of all particles.
+    pub(super) fn of(body: &'a BodyReference, padded_momentum: &'a [[f64; 4]]) -> Self {
+        Self::Of {
+            operator: &body.gradient,
+            field: &padded_momentum[body.particles.clone()],
+            factor: 1.0 / body.density,
+        }
+    }
+
+    /// Those from `first` on, as many as the buffer has, which need not be used.
+    fn from<'b>(&self, first: usize, buffer: &'b mut [Mat3]) -> &'b [Mat3]
+    where
+        'a: 'b,
+    {
+        match *self {
+            Self::Kept(gradients) => &gradients[first..first + buffer.len()],
+            Self::Of {
+                operator,
+                field,
+                factor,
+            } => {
+                operator.scaled_gradients(first, field, factor, buffer);
+                buffer
+            }
+        }
+    }
+}
 
 /// A step of the leapfrog.
 #[derive(Clone, Copy, Debug)]
@@ -18,97 +65,126 @@ pub(super) struct Drift {
 }
 
 impl Drift {
-    /// Advances the points, tile by tile and the rest one by one.
-    pub(super) fn advance(&self, g: &[Mat3], f: &mut [Mat3], h: &mut [Mat3], change: &mut [f64]) {
-        let tiled = g.len() - g.len() % TILE;
-        vectorised(Tiles {
-            step: *self,
-            g: &g[..tiled],
-            f: &mut f[..tiled],
-            h: &mut h[..tiled],
-            change: &mut change[..tiled],
-        });
-        for q in tiled..g.len() {
-            change[q] = self.advance_point(&g[q], &mut f[q], &mut h[q]);
+    /// Advances F of the points of a body from `first` on, tile by tile, with their changes of volume
+    /// and, for every tile, a bound of its 1/λ².
+    pub(super) fn advance(
+        &self,
+        rates: &Rates<'_>,
+        first: usize,
+        f: &mut [Mat3],
+        change: &mut [f64],
+        bounds: &mut [f64],
+    ) {
+        let mut buffer = [Mat3::zeros(); TILE];
+        let mut tensors = Tensors {
+            g: TensorTile::ZERO,
+            f: TensorTile::ZERO,
+        };
+        let tiles = f.chunks_mut(TILE).zip(change.chunks_mut(TILE)).zip(bounds);
+        for (tile, ((f, change), bound)) in tiles.enumerate() {
+            let g = rates.from(first + tile * TILE, &mut buffer[..f.len()]);
+            *bound = if f.len() < TILE {
+                self.advance_points(g, f, change)
+            } else {
+                vectorised(Tile {
+                    step: *self,
+                    tensors: &mut tensors,
+                    g,
+                    f,
+                    change,
+                })
+            };
         }
     }
 
-    /// Advances F and H of one point and returns its change of volume.
-    fn advance_point(&self, g: &Mat3, f: &mut Mat3, h: &mut Mat3) -> f64 {
+    /// Less than a tile.
+    fn advance_points(&self, g: &[Mat3], f: &mut [Mat3], change: &mut [f64]) -> f64 {
+        for ((g, f), change) in g.iter().zip(&mut *f).zip(change) {
+            *change = self.advance_point(g, f);
+        }
+        let deformation = Deformation {
+            gradient: f,
+            cofactor: &[],
+        };
+        let mut bounds = [0.0; TILE];
+        let bounds = &mut bounds[..f.len()];
+        bound::evaluate(self.plane, deformation, bounds);
+        bound::largest(bounds)
+    }
+
+    /// Advances F of one point and returns its change of volume.
+    fn advance_point(&self, g: &Mat3, f: &mut Mat3) -> f64 {
         let dt = self.dt;
-        let start = *h;
-        let quarter = *f + g * (0.25 * dt);
-        let half = *f + g * (0.5 * dt);
-        let middle = start + tensor_cross(&quarter, g) * (0.5 * dt);
-        let end = start + tensor_cross(&half, g) * dt;
+        let begin = *f;
         *f += g * dt;
-        *h = end;
         if self.bonds {
             // tr(G F⁻¹) = H : G / det F with det F = ⅓ H : F.
+            let half = begin + g * (0.5 * dt);
+            let middle = cofactor(&half);
             3.0 * dt * double_dot(&middle, g) / double_dot(&middle, &half)
         } else {
-            let simpson = start + middle * 4.0 + end;
-            dt / 6.0 * double_dot(&simpson, g)
+            (double_dot(&cofactor(f), f) - double_dot(&cofactor(&begin), &begin)) * (1.0 / 3.0)
         }
     }
 }
 
-/// Whole tiles of points.
-struct Tiles<'a> {
+struct Tensors {
+    g: TensorTile,
+    f: TensorTile,
+}
+
+/// A whole tile of points.
+struct Tile<'a> {
     step: Drift,
+    tensors: &'a mut Tensors,
     g: &'a [Mat3],
     f: &'a mut [Mat3],
-    h: &'a mut [Mat3],
     change: &'a mut [f64],
 }
 
-impl WithSimd for Tiles<'_> {
-    type Output = ();
+impl WithSimd for Tile<'_> {
+    /// The bound of 1/λ².
+    type Output = f64;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
+    fn with_simd<S: Simd>(self, simd: S) -> f64 {
         if self.step.plane {
-            self.advance::<S, PlaneLanes<S>>(simd);
+            self.advance::<S, PlaneLanes<S>>(simd)
         } else {
-            self.advance::<S, TensorLanes<S>>(simd);
+            self.advance::<S, TensorLanes<S>>(simd)
         }
     }
 }
 
-impl Tiles<'_> {
+impl Tile<'_> {
     /// The formulas of `advance_point`, in the same order.
     #[inline(always)]
-    fn advance<S: Simd, T: LaneTensor<S>>(self, simd: S) {
+    fn advance<S: Simd, T: LaneTensor<S>>(self, simd: S) -> f64 {
         let Drift { bonds, dt, .. } = self.step;
-        let (mut g, mut f, mut h) = (TensorTile::ZERO, TensorTile::ZERO, TensorTile::ZERO);
-        let mut change = [0.0; TILE];
-        for start in (0..self.g.len()).step_by(TILE) {
-            let range = start..start + TILE;
-            T::read(&mut g, &self.g[range.clone()]);
-            T::read(&mut f, &self.f[range.clone()]);
-            T::read(&mut h, &self.h[range.clone()]);
-            for pack in 0..TILE / S::F64_LANES {
-                let rate = T::load(simd, &g, pack);
-                let begin = T::load(simd, &f, pack);
-                let start = T::load(simd, &h, pack);
-                let quarter = begin.plus(&rate, 0.25 * dt);
+        let Tensors { g, f } = self.tensors;
+        let (mut change, mut bounds) = ([0.0; TILE], [0.0; TILE]);
+        T::read(g, self.g);
+        T::read(f, self.f);
+        for pack in 0..TILE / S::F64_LANES {
+            let rate = T::load(simd, g, pack);
+            let begin = T::load(simd, f, pack);
+            let end = begin.plus(&rate, dt);
+            end.store(f, pack);
+            let cofactor = end.cofactor();
+            let grown = if bonds {
                 let half = begin.plus(&rate, 0.5 * dt);
-                let middle = start.plus(&quarter.cross(&rate), 0.5 * dt);
-                let end = start.plus(&half.cross(&rate), dt);
-                begin.plus(&rate, dt).store(&mut f, pack);
-                end.store(&mut h, pack);
-                let grown = if bonds {
-                    (middle.double_dot(&rate) * (3.0 * dt)).over(middle.double_dot(&half))
-                } else {
-                    let simpson = start.plus(&middle, 4.0).plus(&end, 1.0);
-                    simpson.double_dot(&rate) * (dt / 6.0)
-                };
-                grown.store(&mut change, pack);
-            }
-            T::write(&f, &mut self.f[range.clone()]);
-            T::write(&h, &mut self.h[range.clone()]);
-            self.change[range].copy_from_slice(&change);
+                let middle = half.cofactor();
+                (middle.double_dot(&rate) * (3.0 * dt)).over(middle.double_dot(&half))
+            } else {
+                let start = begin.cofactor();
+                (cofactor.double_dot(&end) - start.double_dot(&begin)) * (1.0 / 3.0)
+            };
+            grown.store(&mut change, pack);
+            bound::of(&end, &cofactor).store(&mut bounds, pack);
         }
+        T::write(f, self.f);
+        self.change.copy_from_slice(&change);
+        bound::largest_of_tile(simd, &bounds)
     }
 }
 
@@ -138,19 +214,27 @@ mod tests {
         for (bonds, plane) in [(true, false), (false, false), (true, true), (false, true)] {
             let g = tensors(1e4, Mat3::zeros(), plane);
             let f = tensors(0.3, Mat3::identity(), plane);
-            let h = tensors(0.3, Mat3::identity(), plane);
             let step = Drift {
                 bonds,
                 plane,
                 dt: 1e-5,
             };
-            let (mut many_f, mut many_h, mut change) = (f.clone(), h.clone(), vec![0.0; count]);
-            step.advance(&g, &mut many_f, &mut many_h, &mut change);
+            let (mut many, mut change, mut bounds) = (f.clone(), vec![0.0; count], [0.0; 4]);
+            step.advance(&Rates::Kept(&g), 0, &mut many, &mut change, &mut bounds);
             for q in 0..count {
-                let (mut one_f, mut one_h) = (f[q], h[q]);
-                let grown = step.advance_point(&g[q], &mut one_f, &mut one_h);
-                assert_eq!((many_f[q], many_h[q]), (one_f, one_h), "point {q}");
-                assert_eq!(change[q], grown, "point {q}");
+                let mut one = f[q];
+                let grown = step.advance_point(&g[q], &mut one);
+                assert_eq!((many[q], change[q]), (one, grown), "point {q}");
+            }
+            for (tile, bound) in bounds.iter().enumerate() {
+                let first = tile * TILE;
+                let deformation = Deformation {
+                    gradient: &many[first..count.min(first + TILE)],
+                    cofactor: &[],
+                };
+                let mut single = vec![0.0; deformation.gradient.len()];
+                bound::evaluate(plane, deformation, &mut single);
+                assert_eq!(single.iter().copied().fold(0.0, f64::max), *bound);
             }
         }
     }

@@ -20,6 +20,7 @@ pub(super) struct Output<'a, H> {
 struct Buffers {
     now: KinematicsTile,
     response: ResponseTile,
+    /// H where it is integrated.
     cofactor: TensorTile,
     pressure: [f64; TILE],
     volume: [f64; TILE],
@@ -94,14 +95,15 @@ impl<M: Material> PointPass<'_, M> {
             volume,
             stress,
         } = buffers;
-        let gradients = &points.deformation_gradient[range.clone()];
-        let cofactors = &points.cofactor[range.clone()];
-        if points.plane {
-            now.deformation_gradient.read_plane(gradients);
-            cofactor.read_plane(cofactors);
-        } else {
-            now.deformation_gradient.read(gradients);
-            cofactor.read(cofactors);
+        let deformation = points.deformation.of(range.clone());
+        read(
+            &mut now.deformation_gradient,
+            deformation.gradient,
+            points.plane,
+        );
+        let integrated = !deformation.cofactor.is_empty();
+        if integrated {
+            read(cofactor, deformation.cofactor, points.plane);
         }
         for i in 0..TILE {
             now.jacobian[i] = points.jacobian(first + i);
@@ -118,7 +120,7 @@ impl<M: Material> PointPass<'_, M> {
         vectorised(Piola {
             now,
             response,
-            cofactor,
+            cofactor: integrated.then_some(&*cofactor),
             pressure,
             volume,
             at_particles: points.at_particles(),
@@ -128,11 +130,20 @@ impl<M: Material> PointPass<'_, M> {
     }
 }
 
+fn read(tile: &mut TensorTile, tensors: &[Mat3], plane: bool) {
+    if plane {
+        tile.read_plane(tensors);
+    } else {
+        tile.read(tensors);
+    }
+}
+
 /// V P = (τ' + τ_vol 1) H V/J, `[eq:piola]`.
 struct Piola<'a> {
     now: &'a KinematicsTile,
     response: &'a ResponseTile,
-    cofactor: &'a TensorTile,
+    /// H, if it is not cof F.
+    cofactor: Option<&'a TensorTile>,
     pressure: &'a [f64; TILE],
     volume: &'a [f64; TILE],
     at_particles: bool,
@@ -156,11 +167,14 @@ impl Piola<'_> {
     #[inline(always)]
     fn evaluate<S: Simd, T: LaneTensor<S>>(self, simd: S) {
         for pack in 0..TILE / S::F64_LANES {
-            let h = T::load(simd, self.cofactor, pack);
+            let f = T::load(simd, &self.now.deformation_gradient, pack);
+            let h = match self.cofactor {
+                Some(cofactor) => T::load(simd, cofactor, pack),
+                None => f.cofactor(),
+            };
             let jacobian = if self.at_particles {
                 Lanes::load(simd, &self.now.jacobian, pack)
             } else {
-                let f = T::load(simd, &self.now.deformation_gradient, pack);
                 h.double_dot(&f).over(Lanes::splat(simd, 3.0))
             };
             let factor = Lanes::load(simd, self.volume, pack).over(jacobian);

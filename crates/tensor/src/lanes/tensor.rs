@@ -32,6 +32,10 @@ pub trait LaneTensor<S: Simd>: Copy {
     #[must_use]
     fn cross(&self, other: &Self) -> Self;
 
+    /// cof A, in the order of [`cofactor`](crate::cofactor).
+    #[must_use]
+    fn cofactor(&self) -> Self;
+
     /// Aᵀ A as 11, 22, 33, 12, 13, 23.
     #[must_use]
     fn gram(&self) -> [Lanes<S>; 6];
@@ -98,6 +102,22 @@ impl<S: Simd> LaneTensor<S> for TensorLanes<S> {
             a21 * b32 - a22 * b31 + a32 * b21 - a31 * b22,
             a31 * b12 - a32 * b11 + a12 * b31 - a11 * b32,
             a11 * b22 - a12 * b21 + a22 * b11 - a21 * b12,
+        ])
+    }
+
+    #[inline(always)]
+    fn cofactor(&self) -> Self {
+        let [a11, a21, a31, a12, a22, a32, a13, a23, a33] = self.0;
+        Self([
+            a22 * a33 - a23 * a32,
+            a32 * a13 - a33 * a12,
+            a12 * a23 - a13 * a22,
+            a23 * a31 - a21 * a33,
+            a33 * a11 - a31 * a13,
+            a13 * a21 - a11 * a23,
+            a21 * a32 - a22 * a31,
+            a31 * a12 - a32 * a11,
+            a11 * a22 - a12 * a21,
         ])
     }
 
@@ -192,6 +212,18 @@ impl<S: Simd> LaneTensor<S> for PlaneLanes<S> {
             -(a21 * b33) - a33 * b21,
             a33 * b11 + a11 * b33,
             a11 * b22 - a12 * b21 + a22 * b11 - a21 * b12,
+        ])
+    }
+
+    #[inline(always)]
+    fn cofactor(&self) -> Self {
+        let [a11, a21, a12, a22, a33] = self.0;
+        Self([
+            a22 * a33,
+            -(a33 * a12),
+            -(a21 * a33),
+            a33 * a11,
+            a11 * a22 - a12 * a21,
         ])
     }
 
