@@ -15,6 +15,11 @@ pub(crate) fn internal(reference: &Reference, work: &mut Workspace) {
         let stress = &work.scaled_stress[body.points.clone()];
         let volume = &reference.volume[body.particles.clone()];
         let force = &mut work.internal_force[body.particles.clone()];
+        if let Some(lines) = &body.lines {
+            let lines = (body, lines);
+            work.lines.divergences(lines, stress, |a| volume[a], force);
+            continue;
+        }
         parallel::for_each_run(force, |offset, force| {
             body.gradient.divergences(offset, stress, force);
             for (force, volume) in force.iter_mut().zip(&volume[offset..]) {

@@ -74,6 +74,7 @@ mod fields;
 mod force;
 mod heat;
 mod leapfrog;
+mod lines;
 mod local_steps;
 mod model;
 mod parallel;

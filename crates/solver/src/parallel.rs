@@ -152,6 +152,26 @@ pub(crate) fn for_each_chunk<A: Send, B: Send, C: Send>(
     for_each_chunk_of((first, second), (third, 1), action);
 }
 
+/// Calls `action(piece, part)` for the runs of `size` entries of a list, the last one shorter; `work` is the
+/// number of items in all.
+pub(crate) fn for_each_piece<T: Send>(
+    list: &mut [T],
+    size: usize,
+    work: usize,
+    action: impl Fn(usize, &mut [T]) + Sync,
+) {
+    if serial(work) {
+        for (piece, part) in list.chunks_mut(size).enumerate() {
+            action(piece, part);
+        }
+        return;
+    }
+    list.par_chunks_mut(size)
+        .enumerate()
+        .with_max_len(CHUNKS_OF_TASK)
+        .for_each(|(piece, part)| action(piece, part));
+}
+
 /// Calls `action(i, &mut first[i], &mut second[i], &mut third[i], group)` for every i, where
 /// `group` is the i-th run of `width` entries of `grouped`.
 pub(crate) fn for_each_with_group<A: Send, B: Send, C: Send, G: Send>(

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use jstsph_geometry::{Body, Dimension};
-use jstsph_sph::{Correction, GradientOperator, JumpOperator, PairOperator, Support};
+use jstsph_sph::{Correction, GradientOperator, JumpOperator, LineOperator, PairOperator, Support};
 use jstsph_tensor::{Mat3, Vec3};
 
 use crate::SolverError;
@@ -57,6 +57,8 @@ pub struct BodyReference {
     pub support: Support,
     /// The operator B from particles to points.
     pub gradient: GradientOperator,
+    /// The same for many neighbours at once, where the body has lines of particles.
+    pub lines: Option<LineOperator>,
     /// How B was made to sum by parts, where it did not do so by itself.
     pub correction: Option<Correction>,
     /// Laplacian of the JST dissipation, when it is used.
@@ -236,6 +238,11 @@ impl Reference {
         } else {
             (gradient, None)
         };
+        let points = match scheme.quadrature {
+            Quadrature::Particles => &body.positions,
+            Quadrature::Bonds => &body.bonds.midpoints,
+        };
+        let lines = LineOperator::new(&gradient, &body.positions, points, body.spacing);
         // Half of each bond to each end: masses follow from the same volumes as the stresses.
         let volume: Vec<f64> = match scheme.quadrature {
             Quadrature::Particles => body.volumes.clone(),
@@ -295,6 +302,7 @@ impl Reference {
             spacing: body.spacing,
             support,
             gradient,
+            lines,
             correction,
             laplacian,
             pairs,

@@ -7,6 +7,7 @@ use std::ops::Range;
 use jstsph_tensor::lanes::TILE;
 use jstsph_tensor::{Mat3, Vec3, cofactor, double_dot};
 
+use crate::lines::LineFields;
 use crate::model::{Formulation, Integrator, Quadrature, Scheme};
 use crate::reference::{BodyReference, Reference};
 
@@ -121,6 +122,8 @@ pub(crate) struct Workspace {
     pub(crate) padded_momentum: Vec<[f64; 4]>,
     /// G = grad(p/ρ) at the points, 1/s.
     pub(crate) velocity_gradient: Vec<Mat3>,
+    /// Fields in the order of the lines of bodies.
+    pub(crate) lines: LineFields,
     /// Bounds of the smallest stretches, left by the drift of the leapfrog.
     pub(crate) stretch_bounds: StretchBounds,
     /// Change of volume of a point over the step or per second, see the strain pass.
@@ -162,6 +165,7 @@ impl Workspace {
             padded_momentum: vec![[0.0; 4]; particles],
             velocity_gradient: vec![Mat3::zeros(); points],
             volume_change: vec![0.0; points],
+            lines: LineFields::new(reference),
             ..Self::default()
         }
     }

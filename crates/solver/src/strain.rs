@@ -12,7 +12,7 @@ use crate::state::{State, Workspace};
 
 mod drift;
 
-use drift::{Drift, Rates};
+use drift::{Drift, GradientOf, Rates};
 
 /// Which strain measures are integrated, and where they live.
 #[derive(Clone, Copy, Debug)]
@@ -38,6 +38,13 @@ pub(crate) fn velocity_gradient(reference: &Reference, work: &mut Workspace) {
     for body in &reference.bodies {
         let field = &work.padded_momentum[body.particles.clone()];
         let gradients = &mut work.velocity_gradient[body.points.clone()];
+        if let Some(lines) = &body.lines {
+            work.lines.gradients(lines, field, 1.0 / body.density);
+            let (slots, found) = (lines.points().slots(), &work.lines);
+            let others = GradientOf::velocity(body, &work.padded_momentum);
+            parallel::fill(gradients, |q| found.tensor(slots[q], || others.at(q)));
+            continue;
+        }
         parallel::for_each_run(gradients, |offset, gradients| {
             body.gradient
                 .scaled_gradients(offset, field, 1.0 / body.density, gradients);
@@ -70,7 +77,7 @@ pub(crate) fn drift(
         let rates = if gradients_are_kept {
             Rates::Kept(&work.velocity_gradient[points.clone()])
         } else {
-            Rates::of(body, &work.padded_momentum)
+            Rates::of(body, &work.padded_momentum, &mut work.lines)
         };
         parallel::for_each_chunk_of(
             (
@@ -115,7 +122,11 @@ pub(crate) fn drift_part(
     let bodies = reference.bodies.iter().zip(groups);
     for ((body, groups), bounds) in bodies.zip(&mut work.stretch_bounds.bodies) {
         let points = body.points.clone();
-        let rates = Rates::of(body, &work.padded_momentum);
+        let rates = if fine {
+            Rates::Rows(GradientOf::velocity(body, &work.padded_momentum))
+        } else {
+            Rates::of(body, &work.padded_momentum, &mut work.lines)
+        };
         let out = (
             &mut state.deformation_gradient[points.clone()],
             &mut work.volume_change[points],

@@ -58,11 +58,11 @@ impl Support {
 /// order, so that results do not depend on the number of threads.
 #[derive(Clone, Debug)]
 pub struct GradientOperator {
-    rows: Rows<[f64; 3]>,
-    columns: Rows<[f64; 3]>,
+    pub(crate) rows: Rows<[f64; 3]>,
+    pub(crate) columns: Rows<[f64; 3]>,
     /// Size of the entries, one over the smoothing length.
-    scale: f64,
-    plane: bool,
+    pub(crate) scale: f64,
+    pub(crate) plane: bool,
 }
 
 /// One entry of a row while it is built.

@@ -26,6 +26,7 @@ mod gradient;
 mod interpolation;
 mod jumps;
 mod kernel;
+mod lines;
 mod pairs;
 mod rows;
 #[cfg(test)]
@@ -35,6 +36,7 @@ pub use gradient::{Correction, GradientOperator, Support};
 pub use interpolation::interpolate;
 pub use jumps::JumpOperator;
 pub use kernel::Kernel;
+pub use lines::{LaneRow, LineOperator, Lines};
 pub use pairs::PairOperator;
 pub use rows::Row;
 

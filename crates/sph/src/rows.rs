@@ -35,7 +35,7 @@ impl Weight for [f64; 3] {
     }
 }
 
-/// Rows of (index, weight) entries, indices ascending within a row.
+/// Rows of (index, weight) entries; indices are ascending within a row where its maker lists them so.
 #[derive(Clone, Debug)]
 pub(crate) struct Rows<W> {
     places: Vec<Place>,
@@ -145,7 +145,7 @@ impl<W: Weight> Rows<W> {
             entries.clear();
             row(i, &mut entries);
             entry_count += entries.len();
-            let first = entries.first().map_or(0, |(index, _)| *index);
+            let first = entries.iter().map(|(index, _)| *index).min().unwrap_or(0);
             steps.clear();
             steps.extend(entries.iter().map(|(index, _)| index - first));
             let steps_at = all_steps.place(&steps, &steps, |run| run == steps);
@@ -195,6 +195,11 @@ impl<W: Weight> Rows<W> {
                     .map(|&(i, w)| (i, self.weights[w as usize])),
             );
         })
+    }
+
+    /// What rows with the same weights have in common: where these are, and how many.
+    pub(crate) fn weights_of(&self, i: usize) -> (u32, u32) {
+        (self.places[i].weights, self.places[i].length)
     }
 
     /// Number of rows.

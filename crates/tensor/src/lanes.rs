@@ -83,6 +83,28 @@ impl<S: Simd> Lanes<S> {
         Self::splat(self.simd, 0.0)
     }
 
+    /// As many neighbouring numbers as there are lanes, from the first of `numbers` on.
+    ///
+    /// # Panics
+    /// If there are not as many: a bug in the caller.
+    #[inline(always)]
+    #[must_use]
+    pub fn from_slice(simd: S, numbers: &[f64]) -> Self {
+        Self {
+            simd,
+            values: S::as_simd_f64s(&numbers[..S::F64_LANES]).0[0],
+        }
+    }
+
+    /// Writes the lanes to the first of `numbers`.
+    ///
+    /// # Panics
+    /// If there are not as many: a bug in the caller.
+    #[inline(always)]
+    pub fn to_slice(self, numbers: &mut [f64]) {
+        S::as_mut_simd_f64s(&mut numbers[..S::F64_LANES]).0[0] = self.values;
+    }
+
     /// 1/x.
     #[inline(always)]
     #[must_use]

@@ -7,47 +7,112 @@ use jstsph_tensor::lanes::{
 };
 use jstsph_tensor::{Mat3, cofactor, double_dot};
 
+use crate::lines::LineFields;
 use crate::reference::BodyReference;
 use crate::state::Deformation;
 use crate::time_step::bound;
 
-/// The velocity gradients of the points of a body.
+/// The gradient of a field over the particles of a body, times a factor.
 #[derive(Clone, Copy)]
-pub(super) enum Rates<'a> {
-    /// They have been evaluated before.
-    Kept(&'a [Mat3]),
-    /// Those of a field over particles, with the fourth numbers that vector loads want, times a factor.
-    Of {
-        operator: &'a GradientOperator,
-        field: &'a [[f64; 4]],
-        factor: f64,
-    },
+pub(super) struct GradientOf<'a> {
+    operator: &'a GradientOperator,
+    /// With the fourth numbers that vector loads want.
+    field: &'a [[f64; 4]],
+    factor: f64,
 }
 
-impl<'a> Rates<'a> {
-    /// G of a body by the padded momenta of all particles.
-    pub(super) fn of(body: &'a BodyReference, padded_momentum: &'a [[f64; 4]]) -> Self {
-        Self::Of {
+impl<'a> GradientOf<'a> {
+    /// G by the padded momenta of all particles.
+    pub(super) fn velocity(body: &'a BodyReference, padded_momentum: &'a [[f64; 4]]) -> Self {
+        Self {
             operator: &body.gradient,
             field: &padded_momentum[body.particles.clone()],
             factor: 1.0 / body.density,
         }
     }
 
-    /// Those from `first` on, as many as the buffer has, which need not be used.
-    fn from<'b>(&self, first: usize, buffer: &'b mut [Mat3]) -> &'b [Mat3]
-    where
-        'a: 'b,
-    {
+    /// At the points from `first` on, as many as there is room for.
+    pub(super) fn read(&self, first: usize, out: &mut [Mat3]) {
+        self.operator
+            .scaled_gradients(first, self.field, self.factor, out);
+    }
+
+    /// At one point.
+    pub(super) fn at(&self, point: usize) -> Mat3 {
+        let mut gradient = [Mat3::zeros()];
+        self.read(point, &mut gradient);
+        gradient[0]
+    }
+}
+
+/// The velocity gradients of the points of a body.
+#[derive(Clone, Copy)]
+pub(super) enum Rates<'a> {
+    /// They have been evaluated before.
+    Kept(&'a [Mat3]),
+    /// They are worked out row by row.
+    Rows(GradientOf<'a>),
+    /// They have been evaluated in the order of the lines of the body, but for a few.
+    Lines {
+        slots: &'a [u32],
+        gradients: &'a LineFields,
+        others: GradientOf<'a>,
+    },
+}
+
+impl<'a> Rates<'a> {
+    /// G of all points of a body by the padded momenta of all particles.
+    pub(super) fn of(
+        body: &'a BodyReference,
+        padded_momentum: &'a [[f64; 4]],
+        fields: &'a mut LineFields,
+    ) -> Self {
+        let others = GradientOf::velocity(body, padded_momentum);
+        let Some(lines) = &body.lines else {
+            return Self::Rows(others);
+        };
+        fields.gradients(lines, others.field, others.factor);
+        Self::Lines {
+            slots: lines.points().slots(),
+            gradients: fields,
+            others,
+        }
+    }
+
+    /// The tile of those from `first` on; `buffer` may be used.
+    fn read_tile(&self, (first, plane): (usize, bool), buffer: &mut [Mat3], tile: &mut TensorTile) {
+        if let Self::Lines {
+            slots,
+            gradients,
+            others,
+        } = *self
+        {
+            let slots = &slots[first..first + TILE];
+            gradients.read_tile(slots, tile, |i| others.at(first + i));
+            return;
+        }
+        self.read(first, buffer);
+        if plane {
+            tile.read_plane(buffer);
+        } else {
+            tile.read(buffer);
+        }
+    }
+
+    /// Those from `first` on, as many as there is room for.
+    fn read(&self, first: usize, out: &mut [Mat3]) {
         match *self {
-            Self::Kept(gradients) => &gradients[first..first + buffer.len()],
-            Self::Of {
-                operator,
-                field,
-                factor,
+            Self::Kept(gradients) => out.copy_from_slice(&gradients[first..first + out.len()]),
+            Self::Rows(rows) => rows.read(first, out),
+            Self::Lines {
+                slots,
+                gradients,
+                others,
             } => {
-                operator.scaled_gradients(first, field, factor, buffer);
-                buffer
+                for (i, out) in out.iter_mut().enumerate() {
+                    let q = first + i;
+                    *out = gradients.tensor(slots[q], || others.at(q));
+                }
             }
         }
     }
@@ -82,14 +147,16 @@ impl Drift {
         };
         let tiles = f.chunks_mut(TILE).zip(change.chunks_mut(TILE)).zip(bounds);
         for (tile, ((f, change), bound)) in tiles.enumerate() {
-            let g = rates.from(first + tile * TILE, &mut buffer[..f.len()]);
+            let first = first + tile * TILE;
             *bound = if f.len() < TILE {
+                let g = &mut buffer[..f.len()];
+                rates.read(first, g);
                 self.advance_points(g, f, change)
             } else {
+                rates.read_tile((first, self.plane), &mut buffer, &mut tensors.g);
                 vectorised(Tile {
                     step: *self,
                     tensors: &mut tensors,
-                    g,
                     f,
                     change,
                 })
@@ -133,11 +200,10 @@ struct Tensors {
     f: TensorTile,
 }
 
-/// A whole tile of points.
+/// A whole tile of points, whose G have been read.
 struct Tile<'a> {
     step: Drift,
     tensors: &'a mut Tensors,
-    g: &'a [Mat3],
     f: &'a mut [Mat3],
     change: &'a mut [f64],
 }
@@ -163,7 +229,6 @@ impl Tile<'_> {
         let Drift { bonds, dt, .. } = self.step;
         let Tensors { g, f } = self.tensors;
         let (mut change, mut bounds) = ([0.0; TILE], [0.0; TILE]);
-        T::read(g, self.g);
         T::read(f, self.f);
         for pack in 0..TILE / S::F64_LANES {
             let rate = T::load(simd, g, pack);
