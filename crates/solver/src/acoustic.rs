@@ -5,10 +5,10 @@ use jstsph_tensor::{Mat3, Vec3, mean_trace, symmetric_part};
 
 use crate::local_steps::Groups;
 use crate::model::{Quadrature, Scheme};
-use crate::parallel;
 use crate::reference::{BodyReference, Reference};
 use crate::simulation::Simulation;
 use crate::state::{Deformation, State, Workspace};
+use crate::{force, parallel, strain};
 
 use lanczos::Tridiagonal;
 
@@ -177,9 +177,7 @@ impl Frequency {
         let padded = &*padded;
         // Gradient, then stress times volume.
         let tensor = &mut work.velocity_gradient[..points];
-        parallel::for_each_run(tensor, |offset, tensor| {
-            body.gradient.scaled_gradients(offset, padded, 1.0, tensor);
-        });
+        strain::gradients(body, (padded, 1.0), &mut work.lines, tensor);
         let shear = 2.0 * body.shear_modulus;
         let bulk =
             body.density * body.wave_speed * body.wave_speed - 4.0 / 3.0 * body.shear_modulus;
@@ -225,12 +223,9 @@ impl Frequency {
             *tensor = stress * elasticity.point_volume[q];
         });
         let (tensor, volume) = (&*tensor, elasticity.volume);
-        parallel::for_each_run(&mut self.image[..particles], |offset, image| {
-            body.gradient.divergences(offset, tensor, image);
-            for (image, volume) in image.iter_mut().zip(&volume[offset..]) {
-                *image /= volume * body.density;
-            }
-        });
+        let image = &mut self.image[..particles];
+        let divisor = |a: usize| volume[a] * body.density;
+        force::divergences(body, tensor, &divisor, &mut work.lines, image);
     }
 }
 

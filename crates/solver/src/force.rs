@@ -2,9 +2,10 @@
 
 use jstsph_tensor::{Mat3, Vec3};
 
+use crate::lines::LineFields;
 use crate::model::{Condition, ConditionKind, Model, Quadrature, Signal};
 use crate::parallel;
-use crate::reference::Reference;
+use crate::reference::{BodyReference, Reference};
 use crate::state::{State, Workspace};
 
 /// T_c = (1/V_c) Σ_q V_q P_q B_qc per unit reference volume, N/m³; approximates −DIV P.
@@ -15,18 +16,28 @@ pub(crate) fn internal(reference: &Reference, work: &mut Workspace) {
         let stress = &work.scaled_stress[body.points.clone()];
         let volume = &reference.volume[body.particles.clone()];
         let force = &mut work.internal_force[body.particles.clone()];
-        if let Some(lines) = &body.lines {
-            let lines = (body, lines);
-            work.lines.divergences(lines, stress, |a| volume[a], force);
-            continue;
-        }
-        parallel::for_each_run(force, |offset, force| {
-            body.gradient.divergences(offset, stress, force);
-            for (force, volume) in force.iter_mut().zip(&volume[offset..]) {
-                *force /= *volume;
-            }
-        });
+        divergences(body, stress, &|a| volume[a], &mut work.lines, force);
     }
+}
+
+/// Σ_q S_q B_qc of tensors at the points of a body, divided by `divisor`, for its particles.
+pub(crate) fn divergences(
+    body: &BodyReference,
+    tensors: &[Mat3],
+    divisor: &(impl Fn(usize) -> f64 + Sync),
+    fields: &mut LineFields,
+    out: &mut [Vec3],
+) {
+    if let Some(lines) = &body.lines {
+        fields.divergences((body, lines), tensors, divisor, out);
+        return;
+    }
+    parallel::for_each_run(out, |offset, out| {
+        body.gradient.divergences(offset, tensors, out);
+        for (k, out) in out.iter_mut().enumerate() {
+            *out /= divisor(offset + k);
+        }
+    });
 }
 
 /// Averages G and F of the bonds to the particles, for the pair stabilisations.

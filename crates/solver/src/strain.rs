@@ -4,10 +4,11 @@
 use jstsph_tensor::lanes::TILE;
 use jstsph_tensor::{Mat3, Vec3, cofactor, double_dot, tensor_cross};
 
+use crate::lines::LineFields;
 use crate::local_steps::{Groups, Part};
 use crate::model::{Formulation, Quadrature};
 use crate::parallel;
-use crate::reference::Reference;
+use crate::reference::{BodyReference, Reference};
 use crate::state::{State, Workspace};
 
 mod drift;
@@ -38,17 +39,25 @@ pub(crate) fn velocity_gradient(reference: &Reference, work: &mut Workspace) {
     for body in &reference.bodies {
         let field = &work.padded_momentum[body.particles.clone()];
         let gradients = &mut work.velocity_gradient[body.points.clone()];
-        if let Some(lines) = &body.lines {
-            work.lines.gradients(lines, field, 1.0 / body.density);
-            let (slots, found) = (lines.points().slots(), &work.lines);
-            let others = GradientOf::velocity(body, &work.padded_momentum);
-            parallel::fill(gradients, |q| found.tensor(slots[q], || others.at(q)));
-            continue;
-        }
-        parallel::for_each_run(gradients, |offset, gradients| {
-            body.gradient
-                .scaled_gradients(offset, field, 1.0 / body.density, gradients);
-        });
+        let field = (field, 1.0 / body.density);
+        self::gradients(body, field, &mut work.lines, gradients);
+    }
+}
+
+/// Gradients of a field over the particles of a body, times a factor, at its points.
+pub(crate) fn gradients(
+    body: &BodyReference,
+    (field, factor): (&[[f64; 4]], f64),
+    fields: &mut LineFields,
+    out: &mut [Mat3],
+) {
+    let rows = GradientOf::new(body, field, factor);
+    if let Some(lines) = &body.lines {
+        fields.gradients(lines, field, factor);
+        let (slots, fields) = (lines.points().slots(), &*fields);
+        parallel::fill(out, |q| fields.tensor(slots[q], || rows.at(q)));
+    } else {
+        parallel::for_each_run(out, |offset, out| rows.read(offset, out));
     }
 }
 

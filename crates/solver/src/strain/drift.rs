@@ -22,13 +22,18 @@ pub(super) struct GradientOf<'a> {
 }
 
 impl<'a> GradientOf<'a> {
-    /// G by the padded momenta of all particles.
-    pub(super) fn velocity(body: &'a BodyReference, padded_momentum: &'a [[f64; 4]]) -> Self {
+    pub(super) fn new(body: &'a BodyReference, field: &'a [[f64; 4]], factor: f64) -> Self {
         Self {
             operator: &body.gradient,
-            field: &padded_momentum[body.particles.clone()],
-            factor: 1.0 / body.density,
+            field,
+            factor,
         }
+    }
+
+    /// G by the padded momenta of all particles.
+    pub(super) fn velocity(body: &'a BodyReference, padded_momentum: &'a [[f64; 4]]) -> Self {
+        let field = &padded_momentum[body.particles.clone()];
+        Self::new(body, field, 1.0 / body.density)
     }
 
     /// At the points from `first` on, as many as there is room for.
