@@ -29,7 +29,7 @@ use crate::Mat3;
 
 mod tensor;
 
-pub use pulp::{Simd, WithSimd};
+pub use pulp::{Scalar, Simd, WithSimd};
 pub use tensor::{LaneTensor, PlaneLanes, TensorLanes};
 
 /// Points that are worked on together. Enough that what is written number by number has left the
@@ -81,6 +81,13 @@ impl<S: Simd> Lanes<S> {
     #[must_use]
     pub fn zero(self) -> Self {
         Self::splat(self.simd, 0.0)
+    }
+
+    /// One in every lane.
+    #[inline(always)]
+    #[must_use]
+    pub fn one(self) -> Self {
+        Self::splat(self.simd, 1.0)
     }
 
     /// 1/x.
