@@ -27,9 +27,11 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 use crate::Mat3;
 
+mod symmetric;
 mod tensor;
 
 pub use pulp::{Scalar, Simd, WithSimd};
+pub use symmetric::{LaneSymmetric, PlaneSymmetricLanes, SymmetricLanes, SymmetricTile};
 pub use tensor::{LaneTensor, PlaneLanes, TensorLanes};
 
 /// Points that are worked on together. Enough that what is written number by number has left the

@@ -454,8 +454,8 @@ pub(super) fn example_thermal() -> Thermal {
     }
 }
 
-mod algebra;
 mod flow;
+mod series;
 mod tile;
 
 #[cfg(test)]
