@@ -14,30 +14,50 @@ use std::time::{Duration, Instant};
 
 use jstsph_solver::{Phase, PhaseObserver, Simulation};
 
-/// The time since the last phase ended, for each phase of the step under way.
+/// The step under way.
 #[derive(Debug)]
-struct Clock(Mutex<(Instant, [Duration; Phase::ALL.len()])>);
+struct Laps {
+    /// When the last phase ended.
+    last: Instant,
+    /// The time of each phase.
+    times: [Duration; Phase::ALL.len()],
+    /// The phases in their order.
+    order: Vec<Phase>,
+}
+
+impl Laps {
+    fn start() -> Self {
+        Self {
+            last: Instant::now(),
+            times: Default::default(),
+            order: Vec::new(),
+        }
+    }
+}
+
+#[derive(Debug)]
+struct Clock(Mutex<Laps>);
 
 impl PhaseObserver for Clock {
+    // `docs/figures/instructions` counts the instructions between two calls of this function.
+    #[inline(never)]
     fn finished(&self, phase: Phase) {
         if let Ok(mut laps) = self.0.lock() {
             let now = Instant::now();
-            let passed = now - laps.0;
-            laps.0 = now;
-            laps.1[phase as usize] += passed;
+            let passed = now - laps.last;
+            laps.last = now;
+            laps.times[phase as usize] += passed;
+            laps.order.push(phase);
         }
     }
 }
 
 impl Clock {
     /// The phases since the last call.
-    fn take(&self) -> [Duration; Phase::ALL.len()] {
+    fn take(&self) -> Laps {
         self.0.lock().map_or_else(
-            |_| Default::default(),
-            |mut laps| {
-                laps.0 = Instant::now();
-                std::mem::take(&mut laps.1)
-            },
+            |_| Laps::start(),
+            |mut laps| std::mem::replace(&mut *laps, Laps::start()),
         )
     }
 }
@@ -64,21 +84,23 @@ fn main() -> Result<(), Problem> {
 }
 
 fn measure(mut simulation: Simulation, end: f64, steps: usize) -> Result<(), Problem> {
-    let clock = Arc::new(Clock(Mutex::new((Instant::now(), Default::default()))));
+    let clock = Arc::new(Clock(Mutex::new(Laps::start())));
     for _ in 0..steps {
         simulation.advance_step(end)?;
     }
     simulation.watch(clock.clone());
     let mut fastest = [Duration::MAX; Phase::ALL.len()];
     let mut step = Duration::MAX;
+    let mut order = Vec::new();
     for _ in 0..steps {
         clock.take();
         simulation.advance_step(end)?;
         let laps = clock.take();
-        step = step.min(laps.iter().sum());
-        for (fastest, lap) in fastest.iter_mut().zip(laps) {
+        step = step.min(laps.times.iter().sum());
+        for (fastest, lap) in fastest.iter_mut().zip(laps.times) {
             *fastest = (*fastest).min(lap);
         }
+        order = laps.order;
     }
     let reference = simulation.reference();
     let (particles, points) = (reference.position.len(), reference.point_volume.len());
@@ -97,5 +119,7 @@ fn measure(mut simulation: Simulation, end: f64, steps: usize) -> Result<(), Pro
     }
     row("all", fastest.iter().sum());
     row("fastest step", step);
+    let order: Vec<&str> = order.into_iter().map(Phase::name).collect();
+    println!("order: {}", order.join(", "));
     Ok(())
 }

@@ -28,6 +28,17 @@ impl ElasticConstants<'_> {
         )
     }
 
+    /// μ(T) of many points, Pa.
+    #[inline]
+    pub(crate) fn shear_moduli<const N: usize>(&self, temperature: &[f64; N]) -> [f64; N] {
+        match (self.young_modulus, self.poisson_ratio) {
+            (Property::Constant(young), Property::Constant(poisson)) => {
+                [shear_modulus(*young, *poisson); N]
+            }
+            _ => temperature.map(|temperature| self.shear_modulus(temperature)),
+        }
+    }
+
     /// κ(T), Pa, at constant temperature.
     #[inline]
     pub(crate) fn bulk_modulus(&self, temperature: f64) -> f64 {

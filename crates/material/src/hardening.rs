@@ -6,7 +6,7 @@
 
 use crate::return_map::{TileProblem, TileReturn, TileSolution};
 use crate::{Description, Key, ParameterError};
-use jstsph_tensor::lanes::{Lanes, Simd, TILE, vectorised};
+use jstsph_tensor::lanes::{Simd, TILE, vectorised};
 use std::fmt::Debug;
 
 /// The state on which a flow stress depends.
@@ -44,14 +44,64 @@ impl FlowStress {
     }
 }
 
-/// Flow stresses and slopes of several points, one per lane, for laws that depend on the plastic strain
-/// alone.
-#[derive(Clone, Copy, Debug)]
-pub struct FlowLanes<S: Simd> {
+/// The states of [`TILE`] points; see [`FlowState`].
+#[derive(Clone, Debug)]
+pub struct FlowStateTile {
+    /// ε_p ≥ 0.
+    pub plastic_strain: [f64; TILE],
+    /// dε_p/dt ≥ 0, 1/s.
+    pub rate: [f64; TILE],
+    /// T, K.
+    pub temperature: [f64; TILE],
+}
+
+impl FlowStateTile {
+    /// One of the points.
+    #[inline(always)]
+    fn at(&self, i: usize) -> FlowState {
+        FlowState {
+            plastic_strain: self.plastic_strain[i],
+            rate: self.rate[i],
+            temperature: self.temperature[i],
+        }
+    }
+}
+
+/// The flow stresses of [`TILE`] points and their derivatives; see [`FlowStress`].
+#[derive(Clone, Debug)]
+pub struct FlowStressTile {
     /// σ_Y, Pa.
-    pub value: Lanes<S>,
-    /// dσ_Y/dε_p, Pa.
-    pub slope: Lanes<S>,
+    pub value: [f64; TILE],
+    /// ∂σ_Y/∂ε_p, Pa.
+    pub slope: [f64; TILE],
+    /// ∂σ_Y/∂(dε_p/dt), Pa s.
+    pub rate_slope: [f64; TILE],
+}
+
+impl FlowStressTile {
+    /// A buffer to fill.
+    pub const ZERO: Self = Self {
+        value: [0.0; TILE],
+        slope: [0.0; TILE],
+        rate_slope: [0.0; TILE],
+    };
+
+    /// One of the points.
+    #[inline(always)]
+    fn at(&self, i: usize) -> FlowStress {
+        FlowStress {
+            value: self.value[i],
+            slope: self.slope[i],
+            rate_slope: self.rate_slope[i],
+        }
+    }
+
+    #[inline(always)]
+    fn set(&mut self, i: usize, flow: FlowStress) {
+        self.value[i] = flow.value;
+        self.slope[i] = flow.slope;
+        self.rate_slope[i] = flow.rate_slope;
+    }
 }
 
 /// Flow stress as a function of the equivalent plastic strain, its rate and the temperature.
@@ -79,43 +129,29 @@ pub trait HardeningLaw: Clone + Debug + Send + Sync + 'static {
         self.flow_stress(at)
     }
 
-    /// Whether the law depends on the plastic strain alone and works on many points at once: with
-    /// [`flow_stress_tile`](Self::flow_stress_tile) and [`flow_stress_lanes`](Self::flow_stress_lanes).
-    const ON_LANES: bool = false;
+    /// Whether σ_Y depends on the rate; what does not need not look for it.
+    const RATE_DEPENDENT: bool = false;
 
-    /// σ_Y and its slope of a tile of plastic strains: the bits of [`flow_stress`](Self::flow_stress).
+    /// [`flow_stress`](Self::flow_stress) of many points, with the same bits, in the instruction set of
+    /// the function it is inlined into. Laws that are more than a few products do it on vectors.
     #[inline(always)]
-    fn flow_stress_tile<S: Simd>(
-        &self,
-        _simd: S,
-        plastic_strain: &[f64; TILE],
-        [value, slope]: [&mut [f64; TILE]; 2],
-    ) {
+    fn flow_stress_tile<S: Simd>(&self, _simd: S, at: &FlowStateTile, out: &mut FlowStressTile) {
         for i in 0..TILE {
-            let flow = self.flow_stress(&FlowState {
-                plastic_strain: plastic_strain[i],
-                rate: 0.0,
-                temperature: crate::ROOM_TEMPERATURE,
-            });
-            (value[i], slope[i]) = (flow.value, flow.slope);
+            out.set(i, self.flow_stress(&at.at(i)));
         }
     }
 
-    /// The bits of [`flow_stress_near`](Self::flow_stress_near), or no number in lanes that this way
-    /// of working does not reach; no number at all from laws that do not work so.
+    /// [`flow_stress_near`](Self::flow_stress_near) of many points, with the same bits.
     #[inline(always)]
-    fn flow_stress_lanes<S: Simd>(
+    fn flow_stress_near_tile<S: Simd>(
         &self,
         simd: S,
-        _start: &FlowLanes<S>,
-        _from: Lanes<S>,
-        _at: Lanes<S>,
-    ) -> FlowLanes<S> {
-        let none = Lanes::splat(simd, f64::NAN);
-        FlowLanes {
-            value: none,
-            slope: none,
-        }
+        _start: &FlowStressTile,
+        _from: &[f64; TILE],
+        at: &FlowStateTile,
+        out: &mut FlowStressTile,
+    ) {
+        self.flow_stress_tile(simd, at, out);
     }
 
     /// Parameter sets on which the conformance tests run.
@@ -184,15 +220,11 @@ macro_rules! register_hardening_laws {
                 match self { $(Self::$law(law) => law.flow_stress_near(start, from, at)),+ }
             }
 
-            /// Solves the equations of radial return of a tile in the law's lanes; false if it has none.
+            /// Solves the equations of radial return of a tile.
             #[inline]
-            pub(crate) fn solve_tile(&self, problem: &TileProblem, solution: &mut TileSolution) -> bool {
+            pub(crate) fn solve_tile(&self, problem: &TileProblem, solution: &mut TileSolution) {
                 match self {
-                    $(Self::$law(law) if $law::ON_LANES => {
-                        vectorised(TileReturn { law, problem, solution });
-                        true
-                    })+
-                    _ => false,
+                    $(Self::$law(law) => vectorised(TileReturn { law, problem, solution })),+
                 }
             }
 
@@ -227,6 +259,8 @@ register_hardening_laws! {
     johnson_cook::JohnsonCook,
     zerilli_armstrong::ZerilliArmstrong,
 }
+
+mod power_term;
 
 const INITIAL_YIELD_STRESS: Key = Key {
     name: "initial_yield_stress",

@@ -27,9 +27,11 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 use crate::Mat3;
 
+mod symmetric;
 mod tensor;
 
-pub use pulp::{Simd, WithSimd};
+pub use pulp::{Scalar, Simd, WithSimd};
+pub use symmetric::{LaneSymmetric, PlaneSymmetricLanes, SymmetricLanes, SymmetricTile};
 pub use tensor::{LaneTensor, PlaneLanes, TensorLanes};
 
 /// Points that are worked on together. Enough that what is written number by number has left the
@@ -103,6 +105,13 @@ impl<S: Simd> Lanes<S> {
     #[inline(always)]
     pub fn to_slice(self, numbers: &mut [f64]) {
         S::as_mut_simd_f64s(&mut numbers[..S::F64_LANES]).0[0] = self.values;
+    }
+
+    /// One in every lane.
+    #[inline(always)]
+    #[must_use]
+    pub fn one(self) -> Self {
+        Self::splat(self.simd, 1.0)
     }
 
     /// 1/x.

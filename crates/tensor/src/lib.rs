@@ -26,7 +26,7 @@ pub use algebra::{
     tensor_cross, von_mises,
 };
 pub use function::{exp_symmetric, log_symmetric};
-pub use power::{power, powers};
+pub use power::{exponential, exponentials, logarithm, logarithms, power, powers};
 pub use spectral::{Spectral, largest_eigenvalue, symmetric_eigen};
 
 /// A vector of three components.

@@ -1,8 +1,7 @@
 //! Linear hardening.
 
-use super::{FlowLanes, FlowState, FlowStress, HardeningLaw, INITIAL_YIELD_STRESS};
+use super::{FlowState, FlowStress, HardeningLaw, INITIAL_YIELD_STRESS};
 use crate::{Key, ParameterError, Range};
-use jstsph_tensor::lanes::{Lanes, Simd};
 use serde::{Deserialize, Serialize};
 
 /// σ_Y = σ_Y0 + H ε_p, Greto & Kulasegaram 2019, (A.14), `[eq:linear-hardening]`.
@@ -33,28 +32,12 @@ impl HardeningLaw for Linear {
         MODULUS.check(self.modulus)
     }
 
-    #[inline]
+    #[inline(always)]
     fn flow_stress(&self, at: &FlowState) -> FlowStress {
         FlowStress::rate_independent(
             self.initial_yield_stress + self.modulus * at.plastic_strain,
             self.modulus,
         )
-    }
-
-    const ON_LANES: bool = true;
-
-    #[inline(always)]
-    fn flow_stress_lanes<S: Simd>(
-        &self,
-        simd: S,
-        _start: &FlowLanes<S>,
-        _from: Lanes<S>,
-        at: Lanes<S>,
-    ) -> FlowLanes<S> {
-        FlowLanes {
-            value: Lanes::splat(simd, self.initial_yield_stress) + at * self.modulus,
-            slope: Lanes::splat(simd, self.modulus),
-        }
     }
 
     /// Copper of Greto & Kulasegaram 2019, Sect. 4.1.

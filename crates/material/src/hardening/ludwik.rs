@@ -1,6 +1,8 @@
 //! Power law of the plastic strain, added to the initial flow stress.
 
-use super::{FlowState, FlowStress, HardeningLaw, INITIAL_YIELD_STRESS};
+use super::power_term::PowerTerm;
+use super::{FlowState, FlowStateTile, FlowStress, FlowStressTile, HardeningLaw, INITIAL_YIELD_STRESS};
+use jstsph_tensor::lanes::Simd;
 use crate::{Key, ParameterError, Range};
 use serde::{Deserialize, Serialize};
 
@@ -46,10 +48,17 @@ impl HardeningLaw for Ludwik {
 
     #[inline]
     fn flow_stress(&self, at: &FlowState) -> FlowStress {
-        FlowStress::rate_independent(
-            self.initial_yield_stress + self.coefficient * at.plastic_strain.powf(self.exponent),
-            self.coefficient * self.exponent * at.plastic_strain.powf(self.exponent - 1.0),
-        )
+        let (hardened, slope) = self.hardened().at(at.plastic_strain);
+        FlowStress::rate_independent(self.initial_yield_stress + hardened, slope)
+    }
+
+    #[inline(always)]
+    fn flow_stress_tile<S: Simd>(&self, simd: S, at: &FlowStateTile, out: &mut FlowStressTile) {
+        let terms = [&mut out.value, &mut out.slope];
+        self.hardened().tile(simd, &at.plastic_strain, terms);
+        for value in &mut out.value {
+            *value += self.initial_yield_stress;
+        }
     }
 
     fn examples() -> Vec<Self> {
@@ -58,5 +67,15 @@ impl HardeningLaw for Ludwik {
             coefficient: 0.25e9,
             exponent: 0.4,
         }]
+    }
+}
+
+impl Ludwik {
+    #[inline(always)]
+    fn hardened(&self) -> PowerTerm {
+        PowerTerm {
+            coefficient: self.coefficient,
+            exponent: self.exponent,
+        }
     }
 }

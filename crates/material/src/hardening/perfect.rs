@@ -1,8 +1,7 @@
 //! No hardening.
 
-use super::{FlowLanes, FlowState, FlowStress, HardeningLaw, INITIAL_YIELD_STRESS};
+use super::{FlowState, FlowStress, HardeningLaw, INITIAL_YIELD_STRESS};
 use crate::{Key, ParameterError};
-use jstsph_tensor::lanes::{Lanes, Simd};
 use serde::{Deserialize, Serialize};
 
 /// σ_Y constant.
@@ -22,25 +21,9 @@ impl HardeningLaw for Perfect {
         INITIAL_YIELD_STRESS.check(self.initial_yield_stress)
     }
 
-    #[inline]
+    #[inline(always)]
     fn flow_stress(&self, _at: &FlowState) -> FlowStress {
         FlowStress::rate_independent(self.initial_yield_stress, 0.0)
-    }
-
-    const ON_LANES: bool = true;
-
-    #[inline(always)]
-    fn flow_stress_lanes<S: Simd>(
-        &self,
-        simd: S,
-        _start: &FlowLanes<S>,
-        _from: Lanes<S>,
-        _at: Lanes<S>,
-    ) -> FlowLanes<S> {
-        FlowLanes {
-            value: Lanes::splat(simd, self.initial_yield_stress),
-            slope: Lanes::splat(simd, 0.0),
-        }
     }
 
     fn examples() -> Vec<Self> {

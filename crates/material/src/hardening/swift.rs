@@ -1,6 +1,6 @@
 //! Power law of the shifted plastic strain.
 
-use super::{FlowLanes, FlowState, FlowStress, HardeningLaw};
+use super::{FlowState, FlowStateTile, FlowStress, FlowStressTile, HardeningLaw};
 use crate::{Key, ParameterError, Range};
 use jstsph_tensor::lanes::{Lanes, Simd, TILE};
 use jstsph_tensor::{power, powers};
@@ -81,47 +81,53 @@ impl HardeningLaw for Swift {
         FlowStress::rate_independent(value, self.exponent * value / strain)
     }
 
-    const ON_LANES: bool = true;
-
     #[inline(always)]
-    fn flow_stress_tile<S: Simd>(
-        &self,
-        simd: S,
-        plastic_strain: &[f64; TILE],
-        [value, slope]: [&mut [f64; TILE]; 2],
-    ) {
-        let mut strain = [0.0; TILE];
-        for i in 0..TILE {
-            strain[i] = self.offset + plastic_strain[i];
+    fn flow_stress_tile<S: Simd>(&self, simd: S, at: &FlowStateTile, out: &mut FlowStressTile) {
+        let mut strain = at.plastic_strain;
+        for strain in &mut strain {
+            *strain += self.offset;
         }
-        powers(simd, &strain, self.exponent, value);
-        for i in 0..TILE {
-            value[i] *= self.coefficient;
-            slope[i] = self.exponent * value[i] / strain[i];
+        powers(simd, &strain, self.exponent, &mut out.value);
+        for (i, strain) in strain.iter().enumerate() {
+            out.value[i] *= self.coefficient;
+            out.slope[i] = self.exponent * out.value[i] / strain;
         }
     }
 
     #[inline(always)]
-    fn flow_stress_lanes<S: Simd>(
+    fn flow_stress_near_tile<S: Simd>(
         &self,
         simd: S,
-        start: &FlowLanes<S>,
-        from: Lanes<S>,
-        at: Lanes<S>,
-    ) -> FlowLanes<S> {
-        let x = (at - from).over(from + Lanes::splat(simd, self.offset));
+        start: &FlowStressTile,
+        from: &[f64; TILE],
+        at: &FlowStateTile,
+        out: &mut FlowStressTile,
+    ) {
         let one = Lanes::splat(simd, 1.0);
-        let mut sum = one;
-        let mut k = SERIES_TERMS;
-        while k > 1 {
-            k -= 1;
-            sum = one + sum * x * ((self.exponent - f64::from(k - 1)) * RECIPROCALS[k as usize]);
+        let offset = Lanes::splat(simd, self.offset);
+        let mut farthest = one.zero();
+        for pack in 0..TILE / S::F64_LANES {
+            let from = Lanes::load(simd, from, pack);
+            let strain = Lanes::load(simd, &at.plastic_strain, pack);
+            let x = (strain - from).over(from + offset);
+            farthest = farthest.if_below(x.abs(), x.abs(), farthest);
+            let mut sum = one;
+            let mut k = SERIES_TERMS;
+            while k > 1 {
+                k -= 1;
+                sum = one
+                    + sum * x * ((self.exponent - f64::from(k - 1)) * RECIPROCALS[k as usize]);
+            }
+            let value = Lanes::load(simd, &start.value, pack) * sum;
+            value.store(&mut out.value, pack);
+            (value * self.exponent)
+                .over(strain + offset)
+                .store(&mut out.slope, pack);
         }
-        let value = start.value * sum;
-        let none = Lanes::splat(simd, f64::NAN);
-        FlowLanes {
-            value: x.abs().if_less(SERIES_LIMIT, value, none),
-            slope: (value * self.exponent).over(at + Lanes::splat(simd, self.offset)),
+        if farthest.largest() >= SERIES_LIMIT {
+            for (i, from) in from.iter().enumerate() {
+                out.set(i, self.flow_stress_near(&start.at(i), *from, &at.at(i)));
+            }
         }
     }
 

@@ -1,6 +1,8 @@
 //! Saturating hardening.
 
-use super::{FlowState, FlowStress, HardeningLaw, INITIAL_YIELD_STRESS};
+use super::{FlowState, FlowStateTile, FlowStress, FlowStressTile, HardeningLaw, INITIAL_YIELD_STRESS};
+use jstsph_tensor::lanes::{Simd, TILE};
+use jstsph_tensor::{exponential, exponentials};
 use crate::{Key, ParameterError, Range};
 use serde::{Deserialize, Serialize};
 
@@ -56,8 +58,24 @@ impl HardeningLaw for Voce {
     #[inline]
     fn flow_stress(&self, at: &FlowState) -> FlowStress {
         let below = (self.saturation_stress - self.initial_yield_stress)
-            * (-self.rate * at.plastic_strain).exp();
+            * exponential(-self.rate * at.plastic_strain);
         FlowStress::rate_independent(self.saturation_stress - below, self.rate * below)
+    }
+
+    #[inline(always)]
+    fn flow_stress_tile<S: Simd>(&self, simd: S, at: &FlowStateTile, out: &mut FlowStressTile) {
+        let mut exponent = at.plastic_strain;
+        for exponent in &mut exponent {
+            *exponent *= -self.rate;
+        }
+        exponentials(simd, &exponent, &mut out.value);
+        for value in &mut out.value {
+            *value *= self.saturation_stress - self.initial_yield_stress;
+        }
+        for i in 0..TILE {
+            out.slope[i] = self.rate * out.value[i];
+            out.value[i] = self.saturation_stress - out.value[i];
+        }
     }
 
     fn examples() -> Vec<Self> {

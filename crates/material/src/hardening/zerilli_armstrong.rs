@@ -1,8 +1,10 @@
 //! Strength by the thermal activation of dislocations: `[eq:zerilli-armstrong]`.
 
-use super::johnson_cook::power;
-use super::{FlowState, FlowStress, HardeningLaw};
+use super::power_term::PowerTerm;
+use super::{FlowState, FlowStateTile, FlowStress, FlowStressTile, HardeningLaw};
 use crate::{Key, ParameterError, Range};
+use jstsph_tensor::lanes::{Simd, TILE};
+use jstsph_tensor::{exponential, exponentials, logarithm, logarithms};
 use serde::{Deserialize, Serialize};
 
 /// σ_Y = C_0 + (C_1 + C_2 √ε_p) exp(−C_3 T + C_4 T ln ε̇_p) + C_5 ε_pⁿ, ε̇_p in 1/s,
@@ -110,24 +112,34 @@ impl HardeningLaw for ZerilliArmstrong {
     // Out of the way of the laws that are a few operations.
     #[inline(never)]
     fn flow_stress(&self, at: &FlowState) -> FlowStress {
-        let sensitivity = self.c4 * at.temperature;
-        let (rate, rate_slope) = power(1.0, sensitivity, at.rate);
-        // Without rate sensitivity the factor is 1 at all rates, zero included.
-        let (rate, rate_slope) = if sensitivity > 0.0 {
-            (rate, rate_slope)
-        } else {
-            (1.0, 0.0)
-        };
-        let soft = (-self.c3 * at.temperature).exp();
-        let (root, root_slope) = power(self.c2, 0.5, at.plastic_strain);
-        let (hardened, slope) = power(self.c5, self.n, at.plastic_strain);
-        let thermal = (self.c1 + root) * soft;
-        // 0 × ∞ at strain zero or rate zero has no meaning; the other factor decides.
-        let product = |a: f64, b: f64| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
-        FlowStress {
-            value: self.c0 + thermal * rate + hardened,
-            slope: product(root_slope, soft * rate) + slope,
-            rate_slope: product(thermal, rate_slope),
+        let (hardened, slope) = self.hardened().at(at.plastic_strain);
+        let root = at.plastic_strain.sqrt();
+        let (base, exponent) = self.activation(at.rate, at.temperature);
+        let activated = exponential(exponent + self.c4 * at.temperature * logarithm(base));
+        self.assembled(at, [hardened, slope], root, activated)
+    }
+
+    const RATE_DEPENDENT: bool = true;
+
+    #[inline(always)]
+    fn flow_stress_tile<S: Simd>(&self, simd: S, at: &FlowStateTile, out: &mut FlowStressTile) {
+        let (mut hardened, mut slope) = ([0.0; TILE], [0.0; TILE]);
+        let terms = [&mut hardened, &mut slope];
+        self.hardened().tile(simd, &at.plastic_strain, terms);
+        let (mut base, mut exponent) = ([0.0; TILE], [0.0; TILE]);
+        for i in 0..TILE {
+            (base[i], exponent[i]) = self.activation(at.rate[i], at.temperature[i]);
+        }
+        let mut activated = [0.0; TILE];
+        logarithms(simd, &base, &mut activated);
+        for i in 0..TILE {
+            exponent[i] += self.c4 * at.temperature[i] * activated[i];
+        }
+        exponentials(simd, &exponent, &mut activated);
+        for i in 0..TILE {
+            let root = at.plastic_strain[i].sqrt();
+            let terms = [hardened[i], slope[i]];
+            out.set(i, self.assembled(&at.at(i), terms, root, activated[i]));
         }
     }
 
@@ -153,6 +165,50 @@ impl HardeningLaw for ZerilliArmstrong {
                 n: 1.0,
             },
         ]
+    }
+}
+
+impl ZerilliArmstrong {
+    #[inline(always)]
+    fn hardened(&self) -> PowerTerm {
+        PowerTerm {
+            coefficient: self.c5,
+            exponent: self.n,
+        }
+    }
+
+    /// The rate whose logarithm counts, 1/s, and −C_3 T.
+    #[inline(always)]
+    fn activation(&self, rate: f64, temperature: f64) -> (f64, f64) {
+        let rate = if rate >= f64::MIN_POSITIVE { rate } else { 1.0 };
+        (rate, -self.c3 * temperature)
+    }
+
+    /// σ_Y and its slopes from C_5 ε_pⁿ and its slope, √ε_p and exp(−C_3 T + C_4 T ln ε̇_p).
+    #[inline(always)]
+    fn assembled(
+        &self,
+        at: &FlowState,
+        [hardened, slope]: [f64; 2],
+        root: f64,
+        activated: f64,
+    ) -> FlowStress {
+        let sensitivity = self.c4 * at.temperature;
+        // Without rate sensitivity the factor is the same at all rates, zero included.
+        let moves = sensitivity > 0.0;
+        let still = at.rate < f64::MIN_POSITIVE;
+        let factor = if moves & still { 0.0 } else { activated };
+        let first_slope = if sensitivity < 1.0 { f64::INFINITY } else { 0.0 };
+        let factor_slope = if still { first_slope } else { sensitivity * activated / at.rate };
+        let thermal = self.c1 + self.c2 * root;
+        // 0 × ∞ at strain zero or rate zero has no meaning; the other factor decides.
+        let root_slope = 0.5 * self.c2 / root;
+        let thermal_slope = if (self.c2 > 0.0) & (factor > 0.0) { root_slope * factor } else { 0.0 };
+        FlowStress {
+            value: self.c0 + thermal * factor + hardened,
+            slope: thermal_slope + slope,
+            rate_slope: if moves & (thermal > 0.0) { thermal * factor_slope } else { 0.0 },
+        }
     }
 }
 

@@ -101,21 +101,17 @@ impl HenckyVonMises {
     fn damage_after(
         &self,
         damage: &Damage,
-        now: &Kinematics,
-        old: &PlasticHistory,
+        [jacobian, temperature, dt]: [f64; 3],
+        before: f64,
         increment: f64,
         equivalent_stress: f64,
     ) -> f64 {
         if equivalent_stress <= 0.0 {
-            return old.damage;
+            return before;
         }
-        let rate = if now.dt > 0.0 {
-            increment / now.dt
-        } else {
-            0.0
-        };
-        let triaxiality = self.volumetric_stress(now.jacobian, now.temperature) / equivalent_stress;
-        damage.after(old.damage, increment, rate, triaxiality, now.temperature)
+        let rate = if dt > 0.0 { increment / dt } else { 0.0 };
+        let triaxiality = self.volumetric_stress(jacobian, temperature) / equivalent_stress;
+        damage.after(before, increment, rate, triaxiality, temperature)
     }
 
     /// The volumetric stress of a model with thermal properties, apart from the usual case.
@@ -133,6 +129,13 @@ impl HenckyVonMises {
     fn check_compression(&self, jacobian: f64) -> Result<(), MaterialError> {
         self.state_equation()
             .map_or(Ok(()), |law| law.check(jacobian))
+    }
+
+    /// Whether all points are inside the range of the equation of state.
+    #[inline]
+    fn bears_compression(&self, now: &KinematicsTile) -> bool {
+        self.equation_of_state.is_none()
+            || (now.jacobian.iter()).all(|jacobian| self.check_compression(*jacobian).is_ok())
     }
 
     #[inline]
@@ -293,7 +296,10 @@ impl Material for HenckyVonMises {
 
         let damage = match &self.damage {
             None => old.damage,
-            Some(law) => self.damage_after(law, now, old, increment, equivalent_stress),
+            Some(law) => {
+                let state = [now.jacobian, now.temperature, now.dt];
+                self.damage_after(law, state, old.damage, increment, equivalent_stress)
+            }
         };
 
         // b_e shrinks by exp(−2 Δε_p ν), ν = 3/2 τ'/τ_eq, and C_p⁻¹ with it. The change is formed, not
@@ -448,8 +454,8 @@ pub(super) fn example_thermal() -> Thermal {
     }
 }
 
-mod algebra;
 mod flow;
+mod series;
 mod tile;
 
 #[cfg(test)]

@@ -1,12 +1,18 @@
 //! Tensors of neighbouring points, one per lane: general ones, and those of plane strain.
 
-use super::{Lanes, Simd, TensorTile, load_all, store_all};
+use super::{
+    LaneSymmetric, Lanes, PlaneSymmetricLanes, Simd, SymmetricLanes, TensorTile, load_all,
+    store_all, times,
+};
 use crate::Mat3;
 
 /// One tensor for each of some neighbouring points. Formulas written with it work for general tensors
 /// and, in half the operations, for those of plane strain; the values are the same, a zero may differ in
 /// its sign.
 pub trait LaneTensor<S: Simd>: Copy {
+    /// The symmetric ones.
+    type Symmetric: LaneSymmetric<S>;
+
     /// Reads a tile of tensors.
     fn read(tile: &mut TensorTile, tensors: &[Mat3]);
 
@@ -36,6 +42,26 @@ pub trait LaneTensor<S: Simd>: Copy {
     #[must_use]
     fn cofactor(&self) -> Self;
 
+    /// A symmetric tensor with all its components.
+    #[must_use]
+    fn of_symmetric(symmetric: &Self::Symmetric) -> Self;
+
+    /// det A.
+    #[must_use]
+    fn determinant(&self) -> Lanes<S>;
+
+    /// Aᵀ s.
+    #[must_use]
+    fn transposed(&self, factor: Lanes<S>) -> Self;
+
+    /// A B.
+    #[must_use]
+    fn product(&self, other: &Self) -> Self;
+
+    /// A B Aᵀ of a symmetric B, of which only one half is worked out.
+    #[must_use]
+    fn congruence(&self, symmetric: &Self) -> Self::Symmetric;
+
     /// Aᵀ A as 11, 22, 33, 12, 13, 23.
     #[must_use]
     fn gram(&self) -> [Lanes<S>; 6];
@@ -50,6 +76,8 @@ pub trait LaneTensor<S: Simd>: Copy {
 pub struct TensorLanes<S: Simd>(pub [Lanes<S>; 9]);
 
 impl<S: Simd> LaneTensor<S> for TensorLanes<S> {
+    type Symmetric = SymmetricLanes<S>;
+
     #[inline(always)]
     fn read(tile: &mut TensorTile, tensors: &[Mat3]) {
         tile.read(tensors);
@@ -122,6 +150,49 @@ impl<S: Simd> LaneTensor<S> for TensorLanes<S> {
     }
 
     #[inline(always)]
+    fn of_symmetric(symmetric: &SymmetricLanes<S>) -> Self {
+        let [m11, m22, m33, m12, m13, m23] = symmetric.0;
+        Self([m11, m12, m13, m12, m22, m23, m13, m23, m33])
+    }
+
+    #[inline(always)]
+    fn determinant(&self) -> Lanes<S> {
+        let [m11, m21, m31, m12, m22, m32, m13, m23, m33] = self.0;
+        m11 * (m22 * m33 - m32 * m23) - m12 * (m21 * m33 - m31 * m23)
+            + m13 * (m21 * m32 - m31 * m22)
+    }
+
+    #[inline(always)]
+    fn transposed(&self, factor: Lanes<S>) -> Self {
+        let mut transposed = *self;
+        for k in 0..9 {
+            transposed.0[k] = self.0[k / 3 + 3 * (k % 3)] * factor;
+        }
+        transposed
+    }
+
+    #[inline(always)]
+    fn product(&self, other: &Self) -> Self {
+        let (a, b) = (&self.0, &other.0);
+        let mut product = *self;
+        for k in 0..9 {
+            let (i, j) = (k % 3, k - k % 3);
+            product.0[k] = a[i] * b[j] + a[i + 3] * b[j + 1] + a[i + 6] * b[j + 2];
+        }
+        product
+    }
+
+    #[inline(always)]
+    fn congruence(&self, symmetric: &Self) -> SymmetricLanes<S> {
+        let (a, f) = (self.product(symmetric).0, &self.0);
+        let mut result = SymmetricLanes([a[0]; 6]);
+        for (k, (i, j)) in HALF.into_iter().enumerate() {
+            result.0[k] = a[i] * f[j] + a[i + 3] * f[j + 3] + a[i + 6] * f[j + 6];
+        }
+        result
+    }
+
+    #[inline(always)]
     fn gram(&self) -> [Lanes<S>; 6] {
         let [h11, h21, h31, h12, h22, h32, h13, h23, h33] = self.0;
         [
@@ -152,6 +223,9 @@ impl<S: Simd> LaneTensor<S> for TensorLanes<S> {
     }
 }
 
+/// Rows and columns of the components of a symmetric tensor.
+const HALF: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+
 /// Tensors of plane strain; components in the order 11, 21, 12, 22, 33.
 #[derive(Clone, Copy, Debug)]
 pub struct PlaneLanes<S: Simd>(pub [Lanes<S>; 5]);
@@ -160,6 +234,8 @@ pub struct PlaneLanes<S: Simd>(pub [Lanes<S>; 5]);
 const PLANE: [usize; 5] = [0, 1, 3, 4, 8];
 
 impl<S: Simd> LaneTensor<S> for PlaneLanes<S> {
+    type Symmetric = PlaneSymmetricLanes<S>;
+
     #[inline(always)]
     fn read(tile: &mut TensorTile, tensors: &[Mat3]) {
         tile.read_plane(tensors);
@@ -224,6 +300,49 @@ impl<S: Simd> LaneTensor<S> for PlaneLanes<S> {
             -(a21 * a33),
             a33 * a11,
             a11 * a22 - a12 * a21,
+        ])
+    }
+
+    #[inline(always)]
+    fn of_symmetric(symmetric: &PlaneSymmetricLanes<S>) -> Self {
+        let [m11, m22, m33, m12] = symmetric.0;
+        Self([m11, m12, m12, m22, m33])
+    }
+
+    #[inline(always)]
+    fn determinant(&self) -> Lanes<S> {
+        let [m11, m21, m12, m22, m33] = self.0;
+        m11 * (m22 * m33) - m12 * (m21 * m33)
+    }
+
+    #[inline(always)]
+    fn transposed(&self, factor: Lanes<S>) -> Self {
+        let [m11, m21, m12, m22, m33] = self.0;
+        Self(times(&[m11, m12, m21, m22, m33], factor))
+    }
+
+    #[inline(always)]
+    fn product(&self, other: &Self) -> Self {
+        let [a11, a21, a12, a22, a33] = self.0;
+        let [b11, b21, b12, b22, b33] = other.0;
+        Self([
+            a11 * b11 + a12 * b21,
+            a21 * b11 + a22 * b21,
+            a11 * b12 + a12 * b22,
+            a21 * b12 + a22 * b22,
+            a33 * b33,
+        ])
+    }
+
+    #[inline(always)]
+    fn congruence(&self, symmetric: &Self) -> PlaneSymmetricLanes<S> {
+        let [f11, f21, f12, f22, f33] = self.0;
+        let [a11, a21, a12, a22, a33] = self.product(symmetric).0;
+        PlaneSymmetricLanes([
+            a11 * f11 + a12 * f12,
+            a21 * f21 + a22 * f22,
+            a33 * f33,
+            a11 * f21 + a12 * f22,
         ])
     }
 

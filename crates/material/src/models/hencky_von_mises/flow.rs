@@ -16,6 +16,8 @@ pub(super) struct Flow {
     pub(super) plastic: bool,
     pub(super) increment: [f64; TILE],
     pub(super) plastic_work: [f64; TILE],
+    /// τ_eq, Pa.
+    pub(super) equivalent_stress: [f64; TILE],
     /// −3 Δε_p/τ_eq,trial: the change of the elastic strain over the trial stress, twice.
     pub(super) direction: [f64; TILE],
     /// τ_eq/τ_eq,trial.
@@ -27,6 +29,7 @@ impl Flow {
         plastic: false,
         increment: [0.0; TILE],
         plastic_work: [0.0; TILE],
+        equivalent_stress: [0.0; TILE],
         direction: [0.0; TILE],
         ratio: [1.0; TILE],
     };
@@ -35,7 +38,7 @@ impl Flow {
     #[inline(always)]
     pub(super) fn of(
         model: &HenckyVonMises,
-        shear_modulus: f64,
+        shear_modulus: &[f64; TILE],
         now: &KinematicsTile,
         old: &[PlasticHistory],
         trial: &Trial,
@@ -56,20 +59,21 @@ impl Flow {
             jacobian: &now.jacobian,
             plastic_strain,
             shear_modulus,
+            temperature: &now.temperature,
+            dt: now.dt,
         };
         let mut flow = Self::NONE;
         let mut solution = TileSolution::ALL_PENDING;
-        if model.hardening.solve_tile(&problem, &mut solution) {
-            vectorised(Consequences {
-                problem: &problem,
-                increment: &solution.increment,
-                flow: &mut flow,
-            });
-            flow.increment = solution.increment;
-        }
+        model.hardening.solve_tile(&problem, &mut solution);
+        vectorised(Consequences {
+            problem: &problem,
+            increment: &solution.increment,
+            flow: &mut flow,
+        });
+        flow.increment = solution.increment;
         for (i, pending) in solution.pending.iter().enumerate() {
             if *pending > 0.0 {
-                flow.set(i, &problem, model, now)?;
+                flow.set(i, &problem, model)?;
             }
         }
         let largest = flow.increment.iter().copied().fold(0.0, f64::max);
@@ -78,35 +82,27 @@ impl Flow {
     }
 
     /// One point as `respond` does it; `None` if that would fail.
-    fn set(
-        &mut self,
-        i: usize,
-        problem: &TileProblem,
-        model: &HenckyVonMises,
-        now: &KinematicsTile,
-    ) -> Option<()> {
+    fn set(&mut self, i: usize, problem: &TileProblem, model: &HenckyVonMises) -> Option<()> {
         let (trial_stress, jacobian) = (problem.trial_stress[i], problem.jacobian[i]);
-        let (plastic_strain, temperature) = (problem.plastic_strain[i], now.temperature[i]);
+        let (plastic_strain, temperature) = (problem.plastic_strain[i], problem.temperature[i]);
         let start = model.hardening.flow_stress(&FlowState {
             plastic_strain,
             rate: 0.0,
             temperature,
         });
-        if trial_stress <= jacobian * start.value {
-            return Some(());
-        }
         let flow = RadialReturn {
             trial_stress,
-            shear_modulus: problem.shear_modulus,
+            shear_modulus: problem.shear_modulus[i],
             jacobian,
             plastic_strain,
-            dt: now.dt,
+            dt: problem.dt,
             temperature,
         }
         .flow(&model.hardening, start)
         .ok()?;
         self.increment[i] = flow.increment;
         self.plastic_work[i] = flow.work;
+        self.equivalent_stress[i] = flow.stress;
         self.direction[i] = -3.0 * flow.increment / trial_stress;
         self.ratio[i] = flow.stress / trial_stress;
         Some(())
@@ -156,15 +152,17 @@ impl WithSimd for Consequences<'_, '_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let (zero, one) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, 1.0));
-        let stiffness = Lanes::splat(simd, RadialReturn::stiffness(self.problem.shear_modulus));
         for pack in 0..TILE / S::F64_LANES {
             let trial_stress = Lanes::load(simd, self.problem.trial_stress, pack);
             let increment = Lanes::load(simd, self.increment, pack);
+            let shear_modulus = Lanes::load(simd, self.problem.shear_modulus, pack);
+            let stiffness = shear_modulus * RadialReturn::STIFFNESS;
             let stress = trial_stress - stiffness * increment;
             let direction = (increment * -3.0).over(trial_stress);
             // Of an elastic point, whose trial stress may be zero, nothing changes.
             let ratio = zero.if_below(increment, stress.over(trial_stress), one);
             let direction = zero.if_below(increment, direction, zero);
+            stress.store(&mut self.flow.equivalent_stress, pack);
             (stress * increment).store(&mut self.flow.plastic_work, pack);
             direction.store(&mut self.flow.direction, pack);
             ratio.store(&mut self.flow.ratio, pack);

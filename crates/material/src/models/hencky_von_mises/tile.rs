@@ -1,19 +1,16 @@
-//! The response of many points at once: the tensor algebra on vectors of points, the scalar equation
-//! of radial return point by point. Same formulas, same order, same bits as `respond`.
+//! The response of many points at once: tensor algebra and radial return on vectors of points. Same formulas, same order, same bits as `respond`.
 
 use super::HenckyVonMises;
-use super::algebra::{
-    self, combination, cofactor_transposed, congruence, determinant, full, load_symmetric, norm_squared,
-    product, scaled, series, square_and_determinant, store_symmetric,
-};
 use super::flow::Flow;
+use super::series::series;
 use crate::logarithmic_strain::{
     LONG_EXPONENTIAL, LONG_LOGARITHM, SHORT_EXPONENTIAL, SHORT_LOGARITHM,
 };
-use crate::{KinematicsTile, PlasticHistory, Property, ResponseTile};
-use jstsph_tensor::lanes::{Lanes, Simd, TILE, TensorTile, WithSimd, vectorised};
-
-type SymmetricTile = [[f64; TILE]; 6];
+use crate::{KinematicsTile, PlasticHistory, ResponseTile};
+use jstsph_tensor::lanes::{
+    LaneSymmetric, LaneTensor, Lanes, PlaneLanes, Simd, SymmetricTile, TILE, TensorLanes, TensorTile,
+    WithSimd, vectorised,
+};
 
 /// See [`Material::respond_tile`](crate::Material::respond_tile).
 pub(super) fn respond(
@@ -23,16 +20,11 @@ pub(super) fn respond(
     new: &mut [PlasticHistory],
     response: &mut ResponseTile,
 ) -> bool {
-    let (Property::Constant(_), Property::Constant(_), None, None) = (
-        &model.young_modulus,
-        &model.poisson_ratio,
-        &model.damage,
-        &model.equation_of_state,
-    ) else {
-        return false;
-    };
-    let shear_modulus = model.elastic().shear_modulus(now.temperature[0]);
     let (old, new) = (&old[..TILE], &mut new[..TILE]);
+    if old.iter().any(|history| model.has_failed(history)) || !model.bears_compression(now) {
+        return false;
+    }
+    let shear_modulus = model.elastic().shear_moduli(&now.temperature);
 
     let mut inverse_plastic = [[0.0; TILE]; 6];
     for (i, history) in old.iter().enumerate() {
@@ -43,12 +35,12 @@ pub(super) fn respond(
     let mut trial = Trial::ZERO;
     vectorised(TrialStress {
         plane: now.plane,
-        shear_modulus,
+        shear_modulus: &shear_modulus,
         deformation_gradient: &now.deformation_gradient,
         inverse_plastic: &inverse_plastic,
         trial: &mut trial,
     });
-    let Some(flow) = Flow::of(model, shear_modulus, now, old, &trial) else {
+    let Some(flow) = Flow::of(model, &shear_modulus, now, old, &trial) else {
         return false;
     };
     if !flow.plastic {
@@ -72,6 +64,15 @@ pub(super) fn respond(
             components_of(&inverse_plastic, i),
         )
         .with_damage(old.damage);
+    }
+    if let Some(damage) = &model.damage {
+        for (i, (new, old)) in new.iter_mut().zip(old).enumerate() {
+            let (increment, stress) = (flow.increment[i], flow.equivalent_stress[i]);
+            if increment > 0.0 {
+                let state = [now.jacobian[i], now.temperature[i], now.dt];
+                new.damage = model.damage_after(damage, state, old.damage, increment, stress);
+            }
+        }
     }
     true
 }
@@ -108,7 +109,7 @@ impl Trial {
 
 struct TrialStress<'a> {
     plane: bool,
-    shear_modulus: f64,
+    shear_modulus: &'a [f64; TILE],
     deformation_gradient: &'a TensorTile,
     inverse_plastic: &'a SymmetricTile,
     trial: &'a mut Trial,
@@ -120,44 +121,41 @@ impl WithSimd for TrialStress<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         if self.plane {
-            self.evaluate::<S, true>(simd);
+            self.evaluate::<S, PlaneLanes<S>>(simd);
         } else {
-            self.evaluate::<S, false>(simd);
+            self.evaluate::<S, TensorLanes<S>>(simd);
         }
     }
 }
 
 impl TrialStress<'_> {
     #[inline(always)]
-    fn evaluate<S: Simd, const PLANE: bool>(self, simd: S) {
+    fn evaluate<S: Simd, T: LaneTensor<S>>(self, simd: S) {
         let trial = self.trial;
         for pack in 0..TILE / S::F64_LANES {
-            let f = algebra::load::<S, PLANE>(simd, self.deformation_gradient, pack);
-            determinant::<S, PLANE>(&f).store(&mut trial.determinant, pack);
-            let c = load_symmetric::<S, PLANE>(simd, self.inverse_plastic, pack);
-            let b = congruence::<S, PLANE>(&f, &full(&c));
-            store_symmetric::<S, PLANE>(&b, &mut trial.b, pack);
+            let f = T::load(simd, self.deformation_gradient, pack);
+            f.determinant().store(&mut trial.determinant, pack);
+            let c = T::Symmetric::load(simd, self.inverse_plastic, pack);
+            let b = f.congruence(&T::of_symmetric(&c));
+            b.store(&mut trial.b, pack);
 
-            let scale = (b[0] + b[1] + b[2]).over(Lanes::splat(simd, 3.0)).inverse();
             let one = Lanes::splat(simd, 1.0);
-            let mut a = scaled::<S, PLANE>(&b, scale);
-            for diagonal in &mut a[..3] {
-                *diagonal = *diagonal - one;
-            }
-            let j2 = norm_squared::<S, PLANE>(&a) * 0.5;
+            let scale = b.trace().over(Lanes::splat(simd, 3.0)).inverse();
+            let a = b.scaled(scale).plus_identity(-one);
+            let j2 = a.norm_squared() * 0.5;
             let distortion = j2 * 2.0;
             let nan = Lanes::splat(simd, f64::NAN);
             scale
                 .if_less(0.0, nan, distortion)
                 .store(&mut trial.distortion, pack);
-            let (square, j3) = square_and_determinant::<S, PLANE>(&a);
+            let (square, j3) = a.square_and_determinant();
             let [_, c1, c2] = series(simd, &SHORT_LOGARITHM, &LONG_LOGARITHM, distortion, j2, j3);
             let c0 = (-c2 * j2).over(Lanes::splat(simd, 3.0));
-            let strain = combination::<S, PLANE>(c0, [c1 * 0.5, c2 * 0.5], [&a, &square]);
-            let stiffness = Lanes::splat(simd, 2.0 * self.shear_modulus);
-            let stress = scaled::<S, PLANE>(&strain, stiffness);
-            store_symmetric::<S, PLANE>(&stress, &mut trial.stress, pack);
-            (norm_squared::<S, PLANE>(&stress) * 1.5)
+            let strain = a.combination(&square, [c0, c1 * 0.5, c2 * 0.5]);
+            let stiffness = Lanes::load(simd, self.shear_modulus, pack) * 2.0;
+            let stress = strain.scaled(stiffness);
+            stress.store(&mut trial.stress, pack);
+            (stress.norm_squared() * 1.5)
                 .sqrt()
                 .store(&mut trial.equivalent_stress, pack);
         }
@@ -179,23 +177,22 @@ impl WithSimd for Update<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         if self.plane {
-            self.evaluate::<S, true>(simd);
+            self.evaluate::<S, PlaneLanes<S>>(simd);
         } else {
-            self.evaluate::<S, false>(simd);
+            self.evaluate::<S, TensorLanes<S>>(simd);
         }
     }
 }
 
 impl Update<'_> {
     #[inline(always)]
-    fn evaluate<S: Simd, const PLANE: bool>(self, simd: S) {
+    fn evaluate<S: Simd, T: LaneTensor<S>>(self, simd: S) {
         for pack in 0..TILE / S::F64_LANES {
-            let trial_stress = load_symmetric::<S, PLANE>(simd, &self.trial.stress, pack);
-            let factor = Lanes::load(simd, &self.flow.direction, pack);
-            let direction = scaled::<S, PLANE>(&trial_stress, factor);
-            let j2 = norm_squared::<S, PLANE>(&direction) * 0.5;
-            let (square, j3) = square_and_determinant::<S, PLANE>(&direction);
-            let [c0, c1, c2] = series(
+            let trial_stress = T::Symmetric::load(simd, &self.trial.stress, pack);
+            let direction = trial_stress.scaled(Lanes::load(simd, &self.flow.direction, pack));
+            let j2 = direction.norm_squared() * 0.5;
+            let (square, j3) = direction.square_and_determinant();
+            let coefficients = series(
                 simd,
                 &SHORT_EXPONENTIAL,
                 &LONG_EXPONENTIAL,
@@ -203,26 +200,19 @@ impl Update<'_> {
                 j2,
                 j3,
             );
-            let exponential_less_one =
-                combination::<S, PLANE>(c0, [c1, c2], [&direction, &square]);
-            let b = load_symmetric::<S, PLANE>(simd, &self.trial.b, pack);
-            let b_change = product::<S, PLANE>(&full(&b), &full(&exponential_less_one));
+            let exponential_less_one = direction.combination(&square, coefficients);
+            let b = T::Symmetric::load(simd, &self.trial.b, pack);
+            let b_change = T::of_symmetric(&b).product(&T::of_symmetric(&exponential_less_one));
 
-            let f = algebra::load::<S, PLANE>(simd, self.deformation_gradient, pack);
-            let inverse_determinant =
-                Lanes::load(simd, &self.trial.determinant, pack).inverse();
-            let f_inverse = cofactor_transposed::<S, PLANE>(&f, inverse_determinant);
-            let change = congruence::<S, PLANE>(&f_inverse, &b_change);
-            let old = load_symmetric::<S, PLANE>(simd, self.inverse_plastic, pack);
-            let mut new = old;
-            for k in 0..6 {
-                new[k] = old[k] + change[k];
-            }
-            store_symmetric::<S, PLANE>(&new, self.inverse_plastic, pack);
+            let f = T::load(simd, self.deformation_gradient, pack);
+            let inverse_determinant = Lanes::load(simd, &self.trial.determinant, pack).inverse();
+            let f_inverse = f.cofactor().transposed(inverse_determinant);
+            let change = f_inverse.congruence(&b_change);
+            let old = T::Symmetric::load(simd, self.inverse_plastic, pack);
+            old.plus(&change).store(self.inverse_plastic, pack);
 
             let ratio = Lanes::load(simd, &self.flow.ratio, pack);
-            let stress = scaled::<S, PLANE>(&trial_stress, ratio);
-            store_symmetric::<S, PLANE>(&stress, self.stress, pack);
+            trial_stress.scaled(ratio).store(self.stress, pack);
         }
     }
 }
@@ -281,7 +271,6 @@ mod tests {
 
     #[test]
     fn tiles_have_the_bits_of_single_points() {
-        let mut tiles = 0;
         let models = HenckyVonMises::examples();
         for (model, plane) in models.iter().flat_map(|model| [(model, false), (model, true)]) {
             // All elastic, mixed, long and short series together.
@@ -289,9 +278,10 @@ mod tests {
                 let (now, old) = points(model, plane, size);
                 let (mut new, mut response) = (old.clone(), ResponseTile::ZERO);
                 if !model.respond_tile(&tile_of(&now, plane), &old, &mut new, &mut response) {
+                    // The series of the logarithm and the exponential do not reach further.
+                    assert!(size > 1e-2, "{model:?} declines at {size}");
                     continue;
                 }
-                tiles += 1;
                 for i in 0..TILE {
                     let one = model.respond(&now[i], &old[i]).unwrap();
                     assert_eq!(new[i], one.history, "{model:?}, point {i}");
@@ -303,7 +293,6 @@ mod tests {
                 }
             }
         }
-        assert!(tiles >= 48, "only {tiles} tiles took the vectorised path");
     }
 
     #[test]
@@ -323,5 +312,21 @@ mod tests {
             spoil(&mut now[17]);
             assert!(!model.respond_tile(&tile_of(&now, false), &old, &mut new, &mut response));
         }
+    }
+
+    #[test]
+    fn tiles_with_a_point_that_has_failed_or_is_compressed_too_far_are_left_to_single_points() {
+        let model = &HenckyVonMises::examples().pop().unwrap();
+        assert!(model.damage.is_some() && model.equation_of_state.is_some());
+        let (mut now, mut old) = points(model, false, 1e-3);
+        let (mut new, mut response) = (old.clone(), ResponseTile::ZERO);
+        old[5] = old[5].with_damage(0.999);
+        assert!(model.respond_tile(&tile_of(&now, false), &old, &mut new, &mut response));
+        old[5] = old[5].with_damage(1.0);
+        assert!(!model.respond_tile(&tile_of(&now, false), &old, &mut new, &mut response));
+        old[5] = old[5].with_damage(0.0);
+        now[7].jacobian = 0.05;
+        assert!(model.respond(&now[7], &old[7]).is_err());
+        assert!(!model.respond_tile(&tile_of(&now, false), &old, &mut new, &mut response));
     }
 }
