@@ -94,7 +94,7 @@ mod viscosity;
 
 pub use energy::{Energies, Momenta, PaperEnergies};
 pub use error::{Place, SolverError};
-pub use fields::ParticleFields;
+pub use fields::{Particle, ParticleFields};
 pub use model::{
     Biharmonic, Condition, ConditionKind, Formulation, Heat, Integrator, Jst, Laplacian, Model,
     ModelBody, ModelObstacle, ObstacleHeat, Quadrature, Scheme, Signal, SignalFunction,

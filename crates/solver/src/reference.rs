@@ -348,6 +348,17 @@ impl Reference {
         (a + b) * 0.5
     }
 
+    /// The body that owns a particle, and the index within it.
+    #[must_use]
+    pub fn owner_of_particle(&self, particle: usize) -> (usize, usize) {
+        let body = self
+            .bodies
+            .iter()
+            .position(|body| body.particles.contains(&particle))
+            .unwrap_or_default();
+        (body, particle - self.bodies[body].particles.start)
+    }
+
     /// The body that owns an evaluation point, and the index within it.
     #[must_use]
     pub fn owner_of_point(&self, point: usize) -> (usize, usize) {
