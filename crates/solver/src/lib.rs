@@ -63,6 +63,7 @@
 //! ```
 
 mod acoustic;
+mod books;
 mod boundary;
 mod consistency;
 mod constraint;
