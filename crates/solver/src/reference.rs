@@ -22,11 +22,11 @@ pub struct Reference {
     /// Weights of the gradient at particles.
     pub weights: Weights,
     /// Reference positions X of all particles, m.
-    pub position: Vec<Vec3>,
+    pub position: Arc<Vec<Vec3>>,
     /// Tributary volumes V_a of all particles, m³ (per metre of thickness in plane strain).
     pub volume: Vec<f64>,
     /// Volumes V_q of all evaluation points, m³.
-    pub point_volume: Vec<f64>,
+    pub point_volume: Arc<Vec<f64>>,
     /// Density of every particle in the inertia, p = ρ v: that of the material times the mass
     /// scaling, kg/m³.
     pub density: Vec<f64>,
@@ -67,7 +67,7 @@ pub struct BodyReference {
     /// Jumps of the upwind dissipation, when it is used.
     pub jumps: Option<JumpOperator>,
     /// Particles whose J a point sees, body indices: the two ends of a bond, or twice the particle.
-    pub ends: Vec<[u32; 2]>,
+    pub ends: Arc<Vec<[u32; 2]>>,
     /// Points that make up a particle, with their shares (adding to one).
     pub shares: Shares,
     /// The body as it was given: lattice cells, bonds.
@@ -173,6 +173,15 @@ impl Shares {
     }
 }
 
+/// Appends to a list, which is shared as long as it is the same.
+fn append<T: Clone>(list: &mut Arc<Vec<T>>, more: &Arc<Vec<T>>) {
+    if list.is_empty() {
+        *list = Arc::clone(more);
+    } else {
+        Arc::make_mut(list).extend_from_slice(more);
+    }
+}
+
 impl Reference {
     /// Whether nothing happens out of the plane.
     pub(crate) fn is_plane(&self) -> bool {
@@ -188,9 +197,9 @@ impl Reference {
             dimension: model.dimension,
             quadrature: model.scheme.quadrature,
             weights: model.scheme.weights,
-            position: Vec::new(),
+            position: Arc::default(),
             volume: Vec::new(),
-            point_volume: Vec::new(),
+            point_volume: Arc::default(),
             density: Vec::new(),
             bodies: Vec::new(),
         };
@@ -215,18 +224,19 @@ impl Reference {
         let first_point = self.point_volume.len();
         let (gradient, ends, shares) = match scheme.quadrature {
             Quadrature::Particles => {
-                self.point_volume.extend_from_slice(&body.volumes);
+                Arc::make_mut(&mut self.point_volume).extend_from_slice(&body.volumes);
                 let ends = (0..particles as u32).map(|a| [a, a]).collect();
-                (at_particles()?, ends, Shares::identity(particles))
+                (at_particles()?, Arc::new(ends), Shares::identity(particles))
             }
             Quadrature::Bonds => {
                 let bonds = &body.bonds;
-                self.point_volume.extend_from_slice(&bonds.volumes);
-                let gradient =
-                    GradientOperator::at_points(&bonds.midpoints, &body.positions, &support)
-                        .map_err(failed)?;
+                append(&mut self.point_volume, &bonds.volumes);
+                let midpoints = bonds.midpoints(&body.positions);
+                let gradient = GradientOperator::at_points(&midpoints, &body.positions, &support)
+                    .map_err(failed)?;
+                drop(midpoints);
                 let shares = Shares::of_bonds(particles, &bonds.ends, &bonds.volumes);
-                (gradient, bonds.ends.clone(), shares)
+                (gradient, Arc::clone(&bonds.ends), shares)
             }
         };
         let (gradient, correction) = if scheme.boundary_correction {
@@ -281,7 +291,7 @@ impl Reference {
         let material_density = input.material.density();
         let density = material_density * scheme.inertia_scale;
         let first = self.position.len();
-        self.position.extend_from_slice(&body.positions);
+        append(&mut self.position, &body.positions);
         self.volume.extend_from_slice(&volume);
         self.density.extend(std::iter::repeat_n(density, particles));
         self.bodies.push(BodyReference {

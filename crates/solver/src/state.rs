@@ -34,7 +34,7 @@ impl State {
         let points = reference.point_volume.len();
         let cofactors = if keeps_cofactor(scheme) { points } else { 0 };
         Self {
-            position: reference.position.clone(),
+            position: reference.position.to_vec(),
             momentum,
             temperature: vec![ROOM_TEMPERATURE; reference.position.len()],
             jacobian: vec![1.0; reference.position.len()],

@@ -145,7 +145,11 @@ fn vibrating(quadrature: Quadrature, integrator: Integrator, hourglass: f64) -> 
     scheme.cfl = 0.2;
     let mut model = model([7, 7, 1], elastic(), scheme);
     let body = &mut model.bodies[0];
-    for (v, x) in body.initial_velocity.iter_mut().zip(&body.body.positions) {
+    for (v, x) in body
+        .initial_velocity
+        .iter_mut()
+        .zip(body.body.positions.iter())
+    {
         // Bending and stretch: the stiffness sees what F does not.
         *v = Vec3::new(4e6 * x.x * x.y, -3e6 * x.x * x.x, 0.0);
     }
