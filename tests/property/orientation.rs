@@ -1,5 +1,7 @@
 //! Physics does not know how particles are numbered, nor which way the lattice points.
 
+use std::sync::Arc;
+
 use jstsph_geometry::{Body, Cells, Dimension};
 use jstsph_solver::{Scheme, Simulation};
 use jstsph_tensor::{Mat3, Vec3};
@@ -22,12 +24,13 @@ fn renumbered(body: &Body, new_name: &[u32]) -> Body {
     let mut renamed = body.clone();
     for (a, &b) in new_name.iter().enumerate() {
         let b = b as usize;
-        renamed.positions[b] = body.positions[a];
+        Arc::make_mut(&mut renamed.positions)[b] = body.positions[a];
         renamed.volumes[b] = body.volumes[a];
         renamed.weights[b] = body.weights[a];
         renamed.boundary[b] = body.boundary[a];
     }
-    for end in renamed.bonds.ends.iter_mut().flatten() {
+    let ends = Arc::make_mut(&mut renamed.bonds.ends);
+    for end in ends.iter_mut().flatten() {
         *end = new_name[*end as usize];
     }
     let rename = |corner: &mut u32| *corner = new_name[*corner as usize];
@@ -80,11 +83,7 @@ fn obliquely_turned_bodies_move_alike() {
     ] {
         let rotation = rotation(axis, 0.7);
         let mut turned = tumbling::body(dimension);
-        for x in turned
-            .positions
-            .iter_mut()
-            .chain(&mut turned.bonds.midpoints)
-        {
+        for x in Arc::make_mut(&mut turned.positions) {
             *x = rotation * *x;
         }
         for (name, scheme) in tumbling::conserving_schemes() {

@@ -81,14 +81,15 @@ impl StandingWave {
         let displacement = self.amplitude * phase.sin();
         let reference = simulation.reference();
         let fields = simulation.particle_fields();
-        let velocity = fields
-            .velocity
-            .iter()
-            .zip(&reference.position)
-            .map(|(velocity, x)| {
-                let exact = (self.shape)(x) * speed;
-                ((velocity - exact).norm_squared(), exact.norm_squared())
-            });
+        let velocity =
+            fields
+                .velocity
+                .iter()
+                .zip(reference.position.iter())
+                .map(|(velocity, x)| {
+                    let exact = (self.shape)(x) * speed;
+                    ((velocity - exact).norm_squared(), exact.norm_squared())
+                });
         let stresses = first_piola_stress(&simulation);
         let points = reference.point_positions();
         let stress = stresses.iter().zip(&points).map(|(stress, x)| {

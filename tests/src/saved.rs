@@ -9,7 +9,7 @@ use jstsph_tensor::Mat3;
 pub fn first_piola_stress(simulation: &Simulation) -> Vec<Mat3> {
     array(simulation, "scaled_stress")
         .chunks_exact(9)
-        .zip(&simulation.reference().point_volume)
+        .zip(simulation.reference().point_volume.iter())
         .map(|(scaled, volume)| Mat3::from_column_slice(scaled) / *volume)
         .collect()
 }

@@ -115,7 +115,8 @@ pub fn jittered(mut body: Body, amount: f64) -> Body {
         z ^= z >> 31;
         (z >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     };
-    for (position, boundary) in body.positions.iter_mut().zip(&body.boundary) {
+    let positions = std::sync::Arc::make_mut(&mut body.positions);
+    for (position, boundary) in positions.iter_mut().zip(&body.boundary) {
         let mut shift = Vec3::zeros();
         for i in 0..axes {
             shift[i] = amount * body.spacing * number();
@@ -123,10 +124,6 @@ pub fn jittered(mut body: Body, amount: f64) -> Body {
         if !boundary {
             *position += shift;
         }
-    }
-    let bonds = &mut body.bonds;
-    for (midpoint, [a, b]) in bonds.midpoints.iter_mut().zip(&bonds.ends) {
-        *midpoint = (body.positions[*a as usize] + body.positions[*b as usize]) * 0.5;
     }
     body
 }

@@ -44,7 +44,7 @@ fn bonds_approach_the_mean_plastic_strain_from_above() {
 fn rollers_hold_and_the_punch_is_where_its_velocity_took_it() {
     let finished = block("[21, 11]", &[]);
     let (state, reference) = (finished.simulation.state(), finished.simulation.reference());
-    for (x, start) in state.position.iter().zip(&reference.position) {
+    for (x, start) in state.position.iter().zip(reference.position.iter()) {
         if start.x == 0.0 || start.x == 1.0 {
             assert_eq!(x.x, start.x);
         }

@@ -27,7 +27,7 @@ impl Finished {
     fn probe(&self, name: &str) -> f64 {
         let probe = self.case.probes.iter().find(|probe| probe.name == name);
         let probe = probe.unwrap_or_else(|| panic!("the case has no probe {name}"));
-        self.simulation.probe(probe, &self.fields)[0]
+        self.simulation.probe(probe)[0]
     }
 
     fn largest_plastic_strain(&self) -> f64 {

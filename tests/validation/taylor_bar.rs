@@ -111,10 +111,9 @@ fn radius_of_the_undeformed_edge_is_that_of_the_cylinder() {
         let overrides = [("body.bar.lattice".to_owned(), lattice)];
         let case = jstsph_case::load(path.as_ref(), &overrides).expect("a valid case");
         let simulation = jstsph_solver::Simulation::new(case.model).expect("a valid model");
-        let fields = simulation.particle_fields();
         for name in ["base_radius", "base_edge_radius"] {
             let probe = case.probes.iter().find(|probe| probe.name == name);
-            let radius = simulation.probe(probe.expect("the case has it"), &fields)[0];
+            let radius = simulation.probe(probe.expect("the case has it"))[0];
             assert!((radius / 3.2e-3 - 1.0).abs() < 1e-14, "{name}: {radius} m");
         }
     }

@@ -159,7 +159,7 @@ fn stretched_bar_conducts_along_its_present_length() {
         let reference = simulation.reference().position.clone();
         for (array, values) in &mut saved.arrays {
             if array == "temperature" {
-                for (t, x) in values.iter_mut().zip(&reference) {
+                for (t, x) in values.iter_mut().zip(reference.iter()) {
                     *t = ROOM + 100.0 * (PI * x.x).cos();
                 }
             }

@@ -216,7 +216,12 @@ fn affine_motion_of_the_outside_is_the_motion_of_the_inside() {
                 let mut simulation = setup::start(model);
                 setup::advance_steps(&mut simulation, steps);
                 let speed = rate.norm() * density;
-                for (p, x) in simulation.state().momentum.iter().zip(&body.positions) {
+                for (p, x) in simulation
+                    .state()
+                    .momentum
+                    .iter()
+                    .zip(body.positions.iter())
+                {
                     let error = (p - velocity(x) * density).norm() / speed;
                     assert!(
                         error < 1e-11,

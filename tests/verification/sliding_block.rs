@@ -73,7 +73,7 @@ fn block(scheme: Scheme, stiffness: f64, v: f64, push: f64, plane: f64) -> Model
 /// Displacements along the plane of the nodes on it.
 fn base(simulation: &Simulation) -> Vec<f64> {
     let reference = &simulation.reference().position;
-    let moved = simulation.state().position.iter().zip(reference);
+    let moved = simulation.state().position.iter().zip(reference.iter());
     moved
         .filter(|(_, start)| start.y == 0.0)
         .map(|(x, start)| x.x - start.x)

@@ -47,7 +47,7 @@ fn upset(friction: f64) -> Simulation {
 /// Widest reach along x of the nodes in the layers for which `chosen` holds, m.
 fn reach(simulation: &Simulation, chosen: impl Fn(f64) -> bool) -> f64 {
     let reference = &simulation.reference().position;
-    let nodes = simulation.state().position.iter().zip(reference);
+    let nodes = simulation.state().position.iter().zip(reference.iter());
     nodes
         .filter(|(_, start)| chosen(start.z))
         .fold(0.0, |reach, (x, _)| x.x.max(reach))

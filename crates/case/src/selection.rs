@@ -62,7 +62,7 @@ fn face_of(selection: &Selection) -> Option<String> {
 
 fn extent(body: &ModelBody) -> String {
     let (mut low, mut high) = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
-    for x in &body.body.positions {
+    for x in body.body.positions.iter() {
         low = low.inf(x);
         high = high.sup(x);
     }

@@ -22,6 +22,7 @@ mod check;
 mod console;
 mod copies;
 mod error;
+mod frame;
 mod interrupt;
 mod list;
 mod plot;

@@ -5,15 +5,16 @@ use std::path::PathBuf;
 use jstsph_case::{Case, FrameCells, FrameFormat, Interval, Precision};
 use jstsph_geometry::Dimension;
 use jstsph_output::{
-    CellKind, Energies, Extremes, Frame, FrameOptions, FrameSeries, HISTORY_COLUMNS, HistoryRow,
+    CellKind, Energies, Extremes, FrameOptions, FrameSeries, HISTORY_COLUMNS, HistoryRow,
     HistoryWriter, OutputError, ResultsFolder, read_latest_restart, write_restart,
 };
-use jstsph_solver::{ConditionKind, ParticleFields, Saved, Simulation};
+use jstsph_solver::{ConditionKind, Saved, Simulation};
 
 use crate::copies;
 use crate::error::CliError;
+use crate::frame;
 use crate::restart::{self, LastRow, decode, encode};
-use crate::writer::{OwnedCells, Writer};
+use crate::writer::{OwnedCells, Series, Thread, Writer};
 
 /// Writes results at the first step at or past each interval.
 pub(crate) struct Recorder<'a> {
@@ -33,8 +34,13 @@ pub(crate) struct Recorder<'a> {
 /// Fewest steps from one state that is kept to the next: a copy takes as long as one or two steps.
 const STEPS_BETWEEN_SAVES: u64 = 50;
 
-/// Evaluation points up to which the state of one of the last rows is kept in memory: 100 MB.
+/// Evaluation points up to which the state of one of the last rows is kept in memory, 100 MB, and a copy of
+/// the fields is made for a thread that writes them.
 const POINTS_KEPT: usize = 300_000;
+
+fn is_small(simulation: &Simulation) -> bool {
+    simulation.reference().point_volume.len() <= POINTS_KEPT
+}
 
 /// When what is due next.
 struct Next {
@@ -177,11 +183,17 @@ impl<'a> Recorder<'a> {
             FrameFormat::Vtu => frames,
             FrameFormat::VtuAndVtkhdf => frames.with_vtkhdf()?,
         };
+        let series = Series::new(frames, cells);
+        let writer = if is_small(simulation) {
+            Writer::Beside(Box::new(Thread::start(series, folder.frames())?))
+        } else {
+            Writer::Within(Box::new(series))
+        };
         let mut recorder = Self {
             case,
             folder,
             history,
-            writer: Writer::start(frames, cells, folder.frames())?,
+            writer,
             next: Next {
                 history: Due::after(time, case.output.history_interval),
                 frame: Due::after(time, case.output.frame_interval),
@@ -189,13 +201,11 @@ impl<'a> Recorder<'a> {
             },
             last,
             resolved,
-            good: (simulation.reference().point_volume.len() <= POINTS_KEPT)
-                .then(|| simulation.save()),
+            good: is_small(simulation).then(|| simulation.save()),
         };
         if is_new {
-            let fields = recorder.fields(simulation);
-            recorder.row(simulation, &fields)?;
-            recorder.frame(simulation, fields)?;
+            recorder.row(simulation)?;
+            recorder.frame(simulation)?;
         }
         Ok(recorder)
     }
@@ -204,23 +214,16 @@ impl<'a> Recorder<'a> {
     pub(crate) fn observe(&mut self, simulation: &Simulation) -> Result<(), OutputError> {
         let row = self.next.history.is_due(simulation);
         let frame = self.next.frame.is_due(simulation);
-        if row || frame {
-            let fields = if frame {
-                self.fields(simulation)
-            } else {
-                simulation.fields_for(&self.case.probes, &[])
-            };
-            if row {
-                self.row(simulation, &fields)?;
-                if let Some(good) = &mut self.good
-                    && simulation.step_count() >= good.step + STEPS_BETWEEN_SAVES
-                {
-                    *good = simulation.save();
-                }
+        if row {
+            self.row(simulation)?;
+            if let Some(good) = &mut self.good
+                && simulation.step_count() >= good.step + STEPS_BETWEEN_SAVES
+            {
+                *good = simulation.save();
             }
-            if frame {
-                self.frame(simulation, fields)?;
-            }
+        }
+        if frame {
+            self.frame(simulation)?;
         }
         // Last: a restart file finds the rows and frames of its own time written.
         if self.next.restart.is_due(simulation) {
@@ -231,11 +234,10 @@ impl<'a> Recorder<'a> {
 
     /// Writes the last row and frame, unless they were just written, and the state.
     pub(crate) fn finish(&mut self, simulation: &Simulation) -> Result<(), OutputError> {
-        let fields = self.fields(simulation);
         if self.last.time < simulation.time() {
-            self.row(simulation, &fields)?;
+            self.row(simulation)?;
         }
-        self.last_frame(simulation, fields)?;
+        self.last_frame(simulation)?;
         self.restart(simulation)?;
         Ok(())
     }
@@ -262,8 +264,7 @@ impl<'a> Recorder<'a> {
             }
         };
         if simulation.restore(&good).is_ok() {
-            let fields = self.fields(simulation);
-            self.last_frame(simulation, fields)?;
+            self.last_frame(simulation)?;
         }
         self.settle()?;
         let step = good.step;
@@ -271,19 +272,10 @@ impl<'a> Recorder<'a> {
         write_restart(&self.folder.restart(), step, &data)
     }
 
-    /// What rows and frames show.
-    fn fields(&self, simulation: &Simulation) -> ParticleFields {
-        simulation.fields_for(&self.case.probes, &self.case.output.fields)
-    }
-
-    fn last_frame(
-        &mut self,
-        simulation: &Simulation,
-        fields: ParticleFields,
-    ) -> Result<(), OutputError> {
+    fn last_frame(&mut self, simulation: &Simulation) -> Result<(), OutputError> {
         match self.writer.last_frame() {
             Some(time) if time >= simulation.time() => Ok(()),
-            _ => self.frame(simulation, fields),
+            _ => self.frame(simulation),
         }
     }
 
@@ -300,7 +292,7 @@ impl<'a> Recorder<'a> {
         self.writer.wait()
     }
 
-    fn row(&mut self, simulation: &Simulation, fields: &ParticleFields) -> Result<(), OutputError> {
+    fn row(&mut self, simulation: &Simulation) -> Result<(), OutputError> {
         let momenta = simulation.momenta();
         let (axes, rotations) = axes(self.case.model.dimension);
         let mut extra: Vec<f64> = axes.iter().map(|axis| momenta.linear[*axis]).collect();
@@ -323,7 +315,7 @@ impl<'a> Recorder<'a> {
         let paper = simulation.paper_energies();
         extra.extend([paper.internal, paper.plastic, paper.jst]);
         extra.extend(
-            probe_values(self.case, simulation, fields)
+            probe_values(self.case, simulation)
                 .into_iter()
                 .map(|(_, value)| value),
         );
@@ -332,54 +324,19 @@ impl<'a> Recorder<'a> {
             step: simulation.step_count(),
             dt: simulation.time_step(),
             energies: energies(simulation),
-            extremes: extremes(simulation, fields),
+            extremes: extremes(simulation),
             probes: &extra,
         })?;
         self.last = now;
         Ok(())
     }
 
-    fn frame(
-        &mut self,
-        simulation: &Simulation,
-        fields: ParticleFields,
-    ) -> Result<(), OutputError> {
-        let state = simulation.state();
-        let mut frame = Frame::new(
-            simulation.time(),
-            simulation.step_count(),
-            state.position.clone(),
-        )
-        .scalar("jacobian", state.jacobian.clone())
-        .scalar("determinant", fields.determinant)
-        .scalar("von_mises_stress", fields.von_mises_stress)
-        .scalar("pressure", fields.pressure)
-        .scalar(
-            "equivalent_plastic_strain",
-            fields.equivalent_plastic_strain,
-        )
-        .scalar("wave_speed", fields.wave_speed)
-        .vector("displacement", fields.displacement)
-        .vector("velocity", fields.velocity)
-        .tensor("deformation_gradient", fields.deformation_gradient)
-        .tensor("cauchy_stress", fields.cauchy_stress);
-        if simulation.has_heat() {
-            frame = frame.scalar("temperature", fields.temperature);
-        }
+    fn frame(&mut self, simulation: &Simulation) -> Result<(), OutputError> {
         let chosen = &self.case.output.fields;
-        frame.scalars.retain(|(name, _)| chosen.contains(&&**name));
-        frame.vectors.retain(|(name, _)| chosen.contains(&&**name));
-        frame.tensors.retain(|(name, _)| chosen.contains(&&**name));
-        let bodies = &simulation.reference().bodies;
-        if bodies.len() > 1 {
-            let mut body = vec![0.0; state.position.len()];
-            for (number, reference) in bodies.iter().enumerate() {
-                #[expect(clippy::cast_precision_loss, reason = "a handful of bodies")]
-                body[reference.particles.clone()].fill(number as f64);
-            }
-            frame = frame.scalar("body", body);
-        }
-        self.writer.frame(frame)
+        self.writer.frame(
+            || frame::whole(simulation, chosen),
+            || frame::lazy(simulation, chosen),
+        )
     }
 }
 
@@ -401,17 +358,13 @@ fn impulses(simulation: &Simulation) -> Vec<jstsph_tensor::Vec3> {
 }
 
 /// Columns and values of all probes.
-pub(crate) fn probe_values(
-    case: &Case,
-    simulation: &Simulation,
-    fields: &ParticleFields,
-) -> Vec<(String, f64)> {
+pub(crate) fn probe_values(case: &Case, simulation: &Simulation) -> Vec<(String, f64)> {
     case.probes
         .iter()
         .flat_map(|probe| {
             Simulation::probe_columns(probe)
                 .into_iter()
-                .zip(simulation.probe(probe, fields))
+                .zip(simulation.probe(probe))
         })
         .collect()
 }
@@ -434,16 +387,12 @@ pub(crate) fn energies(simulation: &Simulation) -> Energies {
 }
 
 /// Extremes over the particles.
-pub(crate) fn extremes(simulation: &Simulation, fields: &ParticleFields) -> Extremes {
-    let jacobian = &simulation.state().jacobian;
+pub(crate) fn extremes(simulation: &Simulation) -> Extremes {
+    let (jacobian_min, jacobian_max) = simulation.jacobian_range();
     Extremes {
-        equivalent_plastic_strain: fields
-            .equivalent_plastic_strain
-            .iter()
-            .copied()
-            .fold(0.0, f64::max),
-        jacobian_min: jacobian.iter().copied().fold(f64::INFINITY, f64::min),
-        jacobian_max: jacobian.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        equivalent_plastic_strain: simulation.largest_plastic_strain(),
+        jacobian_min,
+        jacobian_max,
     }
 }
 

@@ -413,7 +413,6 @@ impl Job<'_> {
         wall: f64,
         first_step: u64,
     ) -> Summary {
-        let fields = simulation.fields_for(&self.case.probes, &[]);
         let reference = simulation.reference();
         let (particles, points) = (reference.position.len(), reference.point_volume.len());
         let entries: usize = reference
@@ -433,15 +432,13 @@ impl Job<'_> {
         summary.energies = energies(simulation);
         let ratio = summary.energies.kinetic_to_internal();
         summary.kinetic_to_internal = ratio.is_finite().then_some(ratio);
-        summary.extremes = extremes(simulation, &fields);
+        summary.extremes = extremes(simulation);
         let positions = &simulation.state().position;
         let inverted = reference.bodies.iter().map(|body| {
             inverted_cells(&body.body.cells, &positions[body.particles.clone()]).inverted as u64
         });
         summary.inverted_cells = inverted.sum();
-        summary.probes = probe_values(self.case, simulation, &fields)
-            .into_iter()
-            .collect();
+        summary.probes = probe_values(self.case, simulation).into_iter().collect();
         summary.warnings = self.warnings.clone();
         let found = verdict::warnings(&summary, simulation.position_corrections());
         summary.warnings.extend(found);

@@ -1,22 +1,33 @@
-//! Frames are written by a thread of their own while the run goes on.
+//! Frames are written by a thread of their own while the run goes on; those of large runs by the threads
+//! of the run, field by field.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, channel, sync_channel};
 use std::thread::JoinHandle;
 
-use jstsph_geometry::Cells;
+use jstsph_geometry::{Body, Cells};
 use jstsph_output::{Frame, FrameSeries, Lattice, OutputError};
 use jstsph_solver::Simulation;
 
 /// Cells of all bodies with indices into the whole simulation.
 pub(crate) enum OwnedCells {
     None,
+    /// Those of the only body.
+    Of(Arc<Body>),
     Quads(Vec<[u32; 4]>),
     Hexahedra(Vec<[u32; 8]>),
 }
 
 impl OwnedCells {
     pub(crate) fn of(simulation: &Simulation) -> Self {
+        if let [only] = &simulation.reference().bodies[..] {
+            return if only.body.cells.is_empty() {
+                Self::None
+            } else {
+                Self::Of(Arc::clone(&only.body))
+            };
+        }
         let (mut quads, mut hexes) = (Vec::new(), Vec::new());
         for body in &simulation.reference().bodies {
             let first = body.particles.start as u32;
@@ -42,8 +53,83 @@ impl OwnedCells {
     fn borrowed(&self) -> Lattice<'_> {
         match self {
             Self::None => Lattice::None,
+            Self::Of(body) => match &body.cells {
+                Cells::Quads(cells) => Lattice::Quads(cells),
+                Cells::Hexes(cells) => Lattice::Hexahedra(cells),
+            },
             Self::Quads(cells) => Lattice::Quads(cells),
             Self::Hexahedra(cells) => Lattice::Hexahedra(cells),
+        }
+    }
+}
+
+/// Writes the frames of a run.
+pub(crate) enum Writer {
+    /// Of a small run.
+    Beside(Box<Thread>),
+    /// Of a large run: a copy of its fields would need a fifth of the memory of all the rest.
+    Within(Box<Series>),
+}
+
+/// A series of frames and the cells of every one of them.
+pub(crate) struct Series {
+    frames: FrameSeries,
+    cells: OwnedCells,
+    last_frame: Option<f64>,
+}
+
+impl Series {
+    pub(crate) fn new(frames: FrameSeries, cells: OwnedCells) -> Self {
+        Self {
+            last_frame: frames.last_time(),
+            frames,
+            cells,
+        }
+    }
+
+    /// Writes a frame, which comes without its cells.
+    ///
+    /// # Errors
+    /// Those of [`FrameSeries::write`].
+    fn write(&mut self, frame: Frame<'_>) -> Result<PathBuf, OutputError> {
+        self.last_frame = Some(frame.time);
+        self.frames.write(&frame.lattice(self.cells.borrowed()))
+    }
+}
+
+impl Writer {
+    /// Time (s) of the last frame given to it.
+    pub(crate) fn last_frame(&self) -> Option<f64> {
+        match self {
+            Self::Beside(thread) => thread.last_frame,
+            Self::Within(series) => series.last_frame,
+        }
+    }
+
+    /// Waits until everything is written.
+    ///
+    /// # Errors
+    /// The first error there was.
+    pub(crate) fn wait(&mut self) -> Result<(), OutputError> {
+        match self {
+            Self::Beside(thread) => thread.wait(),
+            Self::Within(_) => Ok(()),
+        }
+    }
+
+    /// Has a frame, without its cells, written: `whole` makes one that holds all its fields, `lazy` one
+    /// that computes them while they are written.
+    ///
+    /// # Errors
+    /// Of this frame, if it is not finite; of an earlier one.
+    pub(crate) fn frame<'a>(
+        &mut self,
+        whole: impl FnOnce() -> Frame<'static>,
+        lazy: impl FnOnce() -> Frame<'a>,
+    ) -> Result<(), OutputError> {
+        match self {
+            Self::Beside(thread) => thread.frame(whole()),
+            Self::Within(series) => series.write(lazy()).map(|_| ()),
         }
     }
 }
@@ -52,7 +138,7 @@ impl OwnedCells {
 /// waits, so that no more than two are held in memory.
 ///
 /// An error reaches whoever gives it the next frame, or waits for the last; nothing is written after it.
-pub(crate) struct Writer {
+pub(crate) struct Thread {
     /// Where it writes, for its messages.
     folder: PathBuf,
     frames: Option<SyncSender<Box<Frame<'static>>>>,
@@ -63,17 +149,13 @@ pub(crate) struct Writer {
     last_frame: Option<f64>,
 }
 
-impl Writer {
-    /// Starts the thread for a series of frames of these cells in a folder.
+impl Thread {
+    /// Starts the thread for a series of frames in a folder.
     ///
     /// # Errors
     /// The system has no thread to give.
-    pub(crate) fn start(
-        mut series: FrameSeries,
-        cells: OwnedCells,
-        folder: PathBuf,
-    ) -> Result<Self, OutputError> {
-        let last_frame = series.last_time();
+    pub(crate) fn start(mut series: Series, folder: PathBuf) -> Result<Self, OutputError> {
+        let last_frame = series.last_frame;
         // No buffer: giving a frame waits until the thread takes it.
         let (frames, queue) = sync_channel::<Box<Frame<'static>>>(0);
         let (report, done) = channel();
@@ -81,7 +163,7 @@ impl Writer {
             .name("writer".to_owned())
             .spawn(move || {
                 for frame in queue {
-                    let outcome = series.write(&frame.lattice(cells.borrowed()));
+                    let outcome = series.write(*frame);
                     let failed = outcome.is_err();
                     if report.send(outcome).is_err() || failed {
                         return;
@@ -103,16 +185,11 @@ impl Writer {
         })
     }
 
-    /// Time (s) of the last frame given to it.
-    pub(crate) fn last_frame(&self) -> Option<f64> {
-        self.last_frame
-    }
-
     /// Has a frame, without its cells, written.
     ///
     /// # Errors
     /// Of this frame, if it is not finite; of an earlier one.
-    pub(crate) fn frame(&mut self, frame: Frame<'static>) -> Result<(), OutputError> {
+    fn frame(&mut self, frame: Frame<'static>) -> Result<(), OutputError> {
         frame.check()?;
         self.last_frame = Some(frame.time);
         while let Ok(outcome) = self.done.try_recv() {
@@ -133,7 +210,7 @@ impl Writer {
     ///
     /// # Errors
     /// The first error there was.
-    pub(crate) fn wait(&mut self) -> Result<(), OutputError> {
+    fn wait(&mut self) -> Result<(), OutputError> {
         while self.open > 0 {
             let outcome = self.done.recv().map_err(|_| self.lost())?;
             self.open -= 1;
@@ -151,7 +228,7 @@ impl Writer {
     }
 }
 
-impl Drop for Writer {
+impl Drop for Thread {
     /// Lets the thread finish what it was given.
     fn drop(&mut self) {
         self.frames = None;
@@ -168,9 +245,13 @@ mod tests {
     use jstsph_output::FrameOptions;
     use jstsph_tensor::Vec3;
 
-    fn writer(folder: &std::path::Path) -> Writer {
+    fn series(folder: &std::path::Path) -> Series {
         let frames = FrameSeries::create(folder, FrameOptions::default());
-        Writer::start(frames, OwnedCells::None, folder.to_path_buf()).unwrap()
+        Series::new(frames, OwnedCells::None)
+    }
+
+    fn writer(folder: &std::path::Path) -> Thread {
+        Thread::start(series(folder), folder.to_path_buf()).unwrap()
     }
 
     fn frame(time: f64) -> Frame<'static> {
@@ -185,7 +266,7 @@ mod tests {
             writer.frame(frame(f64::from(step))).unwrap();
         }
         writer.wait().unwrap();
-        assert_eq!(writer.last_frame(), Some(4.0));
+        assert_eq!(writer.last_frame, Some(4.0));
         let collection =
             jstsph_output::Collection::read(&folder.path().join("frames.pvd")).unwrap();
         let times: Vec<f64> = collection.entries().iter().map(|(time, _)| *time).collect();
@@ -220,5 +301,31 @@ mod tests {
         assert!(matches!(error, OutputError::NotFinite { .. }), "{error}");
         writer.frame(frame(1.0)).unwrap();
         writer.wait().unwrap();
+    }
+
+    #[test]
+    fn both_ways_write_the_same_file() {
+        let folders = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
+        let lazy = || {
+            let read = |range: std::ops::Range<usize>, out: &mut Vec<Vec3>| {
+                out.extend(range.map(|_| Vec3::x() * 2.0));
+            };
+            Frame::new(2.0, 0, jstsph_output::Values::pieces(1000, read))
+        };
+        let mut writers = [
+            Writer::Beside(Box::new(writer(folders[0].path()))),
+            Writer::Within(Box::new(series(folders[1].path()))),
+        ];
+        let bytes: Vec<Vec<u8>> = writers
+            .iter_mut()
+            .zip(&folders)
+            .map(|(writer, folder)| {
+                writer.frame(|| frame(2.0), lazy).unwrap();
+                writer.wait().unwrap();
+                assert_eq!(writer.last_frame(), Some(2.0));
+                std::fs::read(folder.path().join("frame_000000.vtu")).unwrap()
+            })
+            .collect();
+        assert_eq!(bytes[0], bytes[1]);
     }
 }

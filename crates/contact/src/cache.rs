@@ -7,6 +7,9 @@ use jstsph_tensor::Vec3;
 const GAP_MARGIN: f64 = 1e-9;
 const COORDINATE_MARGIN: f64 = 1e-14;
 
+/// Above the relative rounding of a number to single precision, 2⁻²⁴.
+const ROUNDING: f64 = 1.2e-7;
+
 /// Where a particle was when its gap to one part of an obstacle was last computed, and how far
 /// around that point there is no wall. One per particle and part.
 ///
@@ -18,27 +21,32 @@ const COORDINATE_MARGIN: f64 = 1e-14;
 /// than the coordinates of the particles and their gaps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CachedGap {
-    /// Position in the frame of the obstacle, m.
-    position: Vec3,
+    /// About the position in the frame of the obstacle, m: in single precision, because every particle has
+    /// one of these per wall.
+    position: [f32; 3],
     /// Radius of the ball around it that is free of walls, m; negative if there is none.
-    clearance: f64,
+    clearance: f32,
 }
 
 impl CachedGap {
     /// Nothing is known: the particle needs a check.
     pub const UNKNOWN: Self = Self {
-        position: Vec3::new(0.0, 0.0, 0.0),
-        clearance: f64::NEG_INFINITY,
+        position: [0.0; 3],
+        clearance: f32::NEG_INFINITY,
     };
 
     /// Remembers a gap (m) computed at a position relative to the obstacle (m).
     #[inline]
     #[must_use]
     pub fn new(x: &Vec3, gap: f64) -> Self {
-        let clearance = gap - GAP_MARGIN * gap.abs() - COORDINATE_MARGIN * x.amax();
+        let position = [x.x as f32, x.y as f32, x.z as f32];
+        // The ball is around the rounded position, and no larger for being rounded itself.
+        let off = (x - wide(position)).norm();
+        let clearance = gap - GAP_MARGIN * gap.abs() - COORDINATE_MARGIN * x.amax() - off;
+        let clearance = clearance - ROUNDING * clearance.abs();
         Self {
-            position: *x,
-            clearance,
+            position,
+            clearance: clearance as f32,
         }
     }
 
@@ -48,10 +56,14 @@ impl CachedGap {
     #[inline]
     #[must_use]
     pub fn needs_check(&self, x: &Vec3, reach: f64) -> bool {
-        let slack = self.clearance - reach;
+        let slack = f64::from(self.clearance) - reach;
         // Negated so that anything not a number needs a check.
-        !(slack > 0.0 && (x - self.position).norm_squared() < slack * slack)
+        !(slack > 0.0 && (x - wide(self.position)).norm_squared() < slack * slack)
     }
+}
+
+fn wide(position: [f32; 3]) -> Vec3 {
+    Vec3::from(position.map(f64::from))
 }
 
 impl Default for CachedGap {
@@ -85,5 +97,18 @@ mod tests {
         let cached = CachedGap::new(&Vec3::x(), 1.0);
         assert!(cached.needs_check(&Vec3::new(f64::NAN, 0.0, 0.0), 0.0));
         assert!(cached.needs_check(&Vec3::x(), f64::NAN));
+    }
+
+    #[test]
+    fn rounding_to_single_precision_never_hides_a_wall() {
+        // No number here is one of single precision; the wall is the plane x = 0.3.
+        for k in 0..2000 {
+            let x = Vec3::new(0.1 + 1e-7 * f64::from(k).sin(), 1.0 / 3.0, -7.0 / 9.0);
+            let gap = 0.3 - x.x;
+            let cached = CachedGap::new(&x, gap);
+            let near = x + Vec3::x() * (gap * (1.0 - 1e-9));
+            assert!(cached.needs_check(&near, 0.3 - near.x));
+            assert!(!cached.needs_check(&x, gap * 0.999_99));
+        }
     }
 }

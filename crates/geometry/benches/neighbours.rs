@@ -45,7 +45,7 @@ fn searches(criterion: &mut Criterion) {
     group.bench_function("particles, radius 2.4 spacings", |bencher| {
         bencher.iter(|| neighbours(black_box(&body.positions), 2.4 * body.spacing));
     });
-    let midpoints = &body.bonds.midpoints;
+    let midpoints = &body.bonds.midpoints(&body.positions);
     group.bench_function("bond midpoints, radius 1.6 spacings", |bencher| {
         bencher.iter(|| neighbours_of(black_box(midpoints), &body.positions, 1.6 * body.spacing));
     });

@@ -1,5 +1,7 @@
 //! A body: a shape filled with particles.
 
+use std::sync::Arc;
+
 use jstsph_tensor::Vec3;
 
 use crate::face::{Face, FaceArea};
@@ -16,8 +18,8 @@ pub struct Body {
     pub dimension: Dimension,
     /// The shape; in plane strain with z components set to zero.
     pub shape: Shape,
-    /// Positions of the nodes, m.
-    pub positions: Vec<Vec3>,
+    /// Positions of the nodes, m; shared with a simulation.
+    pub positions: Arc<Vec<Vec3>>,
     /// Tributary volumes, m³ (of 1 m thickness in plane strain): half a cell on a face, quarter on
     /// an edge, eighth at a corner; on rings equal parts of an annulus. They add up to the volume of the shape
     /// to round-off.
@@ -47,21 +49,29 @@ pub struct Body {
 
 /// Bonds of a body: pairs of nearest lattice neighbours along the axes, in the order of their
 /// lower node, then of the axes; on rings the sides of the triangles between them and the lines along the
-/// axis. All vectors have one entry per bond.
+/// axis. All vectors have one entry per bond; those that a simulation needs, too, are shared with it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bonds {
     /// The two nodes; the first has the smaller coordinate, on rings the smaller radius or height.
-    pub ends: Vec<[u32; 2]>,
+    pub ends: Arc<Vec<[u32; 2]>>,
     /// Axis along which the bond lies: 0, 1 or 2; on rings 0 outwards, 1 along a ring, 2 along the axis.
     pub directions: Vec<u8>,
-    /// Midpoints, m.
-    pub midpoints: Vec<Vec3>,
     /// Volume of the part of the body that is nearest to the midpoint, m³: a quarter (plane
     /// strain) or a twelfth (3D) of every full cell at the bond, and what lies inside the shape of
     /// the cells that it clips; on rings a third of every triangle or a ninth of every prism at the bond.
     /// They add up to the volume of the shape to round-off, and on a lattice a node's tributary volume is half
     /// the sum over its bonds.
-    pub volumes: Vec<f64>,
+    pub volumes: Arc<Vec<f64>>,
+}
+
+impl Bonds {
+    /// Midpoints, m, between the positions of the body's nodes.
+    #[must_use]
+    pub fn midpoints(&self, positions: &[Vec3]) -> Vec<Vec3> {
+        let position = |end: u32| positions[end as usize];
+        let middle = |[a, b]: [u32; 2]| (position(a) + position(b)) * 0.5;
+        self.ends.iter().map(|ends| middle(*ends)).collect()
+    }
 }
 
 /// Fills a shape with particles.

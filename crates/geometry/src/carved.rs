@@ -5,6 +5,8 @@
 //! along lines, each piece goes to the nearest bond, and all of these are scaled so that the total
 //! is the volume of the shape.
 
+use std::sync::Arc;
+
 use jstsph_tensor::Vec3;
 
 use crate::body::{Body, Bonds};
@@ -73,7 +75,7 @@ pub(crate) fn build(
         .iter()
         .map(|&point| lattice.place(point))
         .collect();
-    let bonds = grid.bonds(&positions, |point, axis| volumes[axis][lattice.flat(point)]);
+    let bonds = grid.bonds(|point, axis| volumes[axis][lattice.flat(point)]);
     let bonds = with_volume(&bonds);
     let node_volumes = crate::clipped::node_volumes(&bonds, positions.len());
     let cells = match grid.cells() {
@@ -95,7 +97,7 @@ pub(crate) fn build(
         boundary,
         surface,
         faces,
-        positions,
+        positions: positions.into(),
         shape,
     })
 }
@@ -106,10 +108,9 @@ fn with_volume(bonds: &Bonds) -> Bonds {
         .filter(|&bond| bonds.volumes[bond] > 0.0)
         .collect();
     Bonds {
-        ends: kept.iter().map(|&bond| bonds.ends[bond]).collect(),
+        ends: Arc::new(kept.iter().map(|&bond| bonds.ends[bond]).collect()),
         directions: kept.iter().map(|&bond| bonds.directions[bond]).collect(),
-        midpoints: kept.iter().map(|&bond| bonds.midpoints[bond]).collect(),
-        volumes: kept.iter().map(|&bond| bonds.volumes[bond]).collect(),
+        volumes: Arc::new(kept.iter().map(|&bond| bonds.volumes[bond]).collect()),
     }
 }
 

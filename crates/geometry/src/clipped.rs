@@ -44,7 +44,7 @@ pub(crate) fn build(shape: Shape, round: &Round, n: usize, layers: usize) -> Bod
         })
         .collect();
 
-    let bonds = grid.bonds(&positions, |point, axis| {
+    let bonds = grid.bonds(|point, axis| {
         let (i, j) = in_section(point);
         let place = section.index(i, j);
         if axis == along {
@@ -82,7 +82,7 @@ pub(crate) fn build(shape: Shape, round: &Round, n: usize, layers: usize) -> Bod
             layers,
         }
         .all(&grid, &positions),
-        positions,
+        positions: positions.into(),
         shape,
     }
 }
@@ -90,7 +90,7 @@ pub(crate) fn build(shape: Shape, round: &Round, n: usize, layers: usize) -> Bod
 /// V_a = ½ Σ V_q over the node's bonds, so that both quadratures share masses.
 pub(crate) fn node_volumes(bonds: &Bonds, nodes: usize) -> Vec<f64> {
     let mut volumes = vec![0.0; nodes];
-    for (ends, volume) in bonds.ends.iter().zip(&bonds.volumes) {
+    for (ends, volume) in bonds.ends.iter().zip(bonds.volumes.iter()) {
         for &end in ends {
             volumes[end as usize] += 0.5 * volume;
         }

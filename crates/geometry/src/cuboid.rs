@@ -47,7 +47,7 @@ pub(crate) fn build(shape: Shape, counts: [usize; 3], dimension: Dimension) -> B
         .collect();
     // A bond inside has all its 2^(d−1) cells, each giving one of its d 2^(d−1) edges an equal
     // part: 1/d of a cell in all, and the fraction of the cells that exist near the boundary.
-    let bonds = grid.bonds(&positions, |point, along| {
+    let bonds = grid.bonds(|point, along| {
         let across = (0..axes).filter(|&axis| axis != along);
         cell / axes as f64 * across.map(|axis| part(point, axis)).product::<f64>()
     });
@@ -97,7 +97,7 @@ pub(crate) fn build(shape: Shape, counts: [usize; 3], dimension: Dimension) -> B
         boundary: grid.boundary(),
         surface: None,
         faces: faces.collect(),
-        positions,
+        positions: positions.into(),
         shape,
     }
 }

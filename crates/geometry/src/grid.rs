@@ -1,7 +1,5 @@
 //! Numbering of the nodes of a cubic lattice, some of whose points may be left out.
 
-use jstsph_tensor::Vec3;
-
 use crate::{Bonds, Cells, Dimension};
 
 const ABSENT: u32 = u32::MAX;
@@ -79,30 +77,27 @@ impl Grid {
 
     /// Bonds in the order of their lower node, then of the axes. `volume` gives the volume of the
     /// bond from a lattice point along an axis.
-    pub(crate) fn bonds(
-        &self,
-        positions: &[Vec3],
-        volume: impl Fn([usize; 3], usize) -> f64,
-    ) -> Bonds {
+    pub(crate) fn bonds(&self, volume: impl Fn([usize; 3], usize) -> f64) -> Bonds {
         let axes = self.dimension.count();
-        let mut bonds = Bonds {
-            ends: Vec::with_capacity(axes * self.points.len()),
-            directions: Vec::with_capacity(axes * self.points.len()),
-            midpoints: Vec::with_capacity(axes * self.points.len()),
-            volumes: Vec::with_capacity(axes * self.points.len()),
-        };
+        let (mut ends, mut directions, mut volumes) = (
+            Vec::with_capacity(axes * self.points.len()),
+            Vec::with_capacity(axes * self.points.len()),
+            Vec::with_capacity(axes * self.points.len()),
+        );
         for (node, &point) in self.points.iter().enumerate() {
             for axis in 0..axes {
                 if let Some(other) = self.next(point, axis) {
-                    let (a, b) = (positions[node], positions[other as usize]);
-                    bonds.ends.push([node as u32, other]);
-                    bonds.directions.push(axis as u8);
-                    bonds.midpoints.push((a + b) * 0.5);
-                    bonds.volumes.push(volume(point, axis));
+                    ends.push([node as u32, other]);
+                    directions.push(axis as u8);
+                    volumes.push(volume(point, axis));
                 }
             }
         }
-        bonds
+        Bonds {
+            ends: ends.into(),
+            directions,
+            volumes: volumes.into(),
+        }
     }
 
     /// Cells all of whose corners are nodes, in the order of their lowest corner.
@@ -200,7 +195,7 @@ mod tests {
     fn a_missing_corner_removes_cells_and_bonds() {
         let whole = Grid::new([3, 3, 1], Dimension::PlaneStrain, |_| true);
         let cut = Grid::new([3, 3, 1], Dimension::PlaneStrain, |p| p != [2, 2, 0]);
-        let bonds = |grid: &Grid| grid.bonds(&[Vec3::zeros(); 9], |_, _| 0.0).ends.len();
+        let bonds = |grid: &Grid| grid.bonds(|_, _| 0.0).ends.len();
         assert_eq!((bonds(&whole), bonds(&cut)), (12, 10));
         assert_eq!((whole.cells().len(), cut.cells().len()), (4, 3));
         assert_eq!(whole.boundary().iter().filter(|&&b| !b).count(), 1);

@@ -4,8 +4,6 @@ mod strips;
 
 use std::f64::consts::PI;
 
-use jstsph_tensor::Vec3;
-
 use strips::Strips;
 
 use crate::body::{Body, Bonds, Round};
@@ -103,10 +101,10 @@ pub(crate) fn build(
             Dimension::PlaneStrain => width,
             Dimension::Solid => width.min(layer),
         },
-        bonds: bonds(&strips, dimension, layers, layer, &positions),
+        bonds: bonds(&strips, dimension, layers, layer),
         cells: cells(&strips, dimension, layers, offsets.len()),
         faces: round_faces(round, faces),
-        positions,
+        positions: positions.into(),
         volumes,
         weights,
         boundary,
@@ -119,25 +117,12 @@ pub(crate) fn build(
 ///
 /// A triangle of the section is the bottom of a prism, whose nine edges are bonds with a ninth of its volume
 /// each.
-fn bonds(
-    strips: &Strips,
-    dimension: Dimension,
-    layers: usize,
-    layer: f64,
-    positions: &[Vec3],
-) -> Bonds {
-    let mut bonds = Bonds {
-        ends: Vec::new(),
-        directions: Vec::new(),
-        midpoints: Vec::new(),
-        volumes: Vec::new(),
-    };
+fn bonds(strips: &Strips, dimension: Dimension, layers: usize, layer: f64) -> Bonds {
+    let (mut all, mut directions, mut volumes) = (Vec::new(), Vec::new(), Vec::new());
     let mut add = |ends: [u32; 2], direction: u8, volume: f64| {
-        let [a, b] = ends.map(|end| positions[end as usize]);
-        bonds.ends.push(ends);
-        bonds.directions.push(direction);
-        bonds.midpoints.push((a + b) * 0.5);
-        bonds.volumes.push(volume);
+        all.push(ends);
+        directions.push(direction);
+        volumes.push(volume);
     };
     for k in 0..layers {
         let height = match dimension {
@@ -157,7 +142,11 @@ fn bonds(
             }
         }
     }
-    bonds
+    Bonds {
+        ends: all.into(),
+        directions,
+        volumes: volumes.into(),
+    }
 }
 
 /// The cells of the section, or the prisms on them.

@@ -112,7 +112,7 @@ fn whole_number_coordinates_agree() {
 #[test]
 fn bond_midpoints_find_the_nodes_around_them() {
     let body = box_body([9, 8, 7], Dimension::Solid);
-    let midpoints = &body.bonds.midpoints;
+    let midpoints = &body.bonds.midpoints(&body.positions);
     for radius in [0.16, 0.05, 0.05 * 5.0_f64.sqrt()] {
         let expected = cell_list(midpoints, &body.positions, radius);
         assert_same(

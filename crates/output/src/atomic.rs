@@ -24,17 +24,39 @@ pub fn atomic_write(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), OutputError> {
-    try_atomic_write(path, write).map_err(OutputError::io("write", path))
+    atomic_file(path, |file| {
+        write(file).map_err(OutputError::io("write", path))
+    })
 }
 
-fn try_atomic_write(
+/// [`atomic_write`] for those who come back to an earlier place of the file.
+///
+/// # Errors
+/// Those of `write` and of [`atomic_write`].
+pub(crate) fn atomic_file(
     path: &Path,
-    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> io::Result<()> {
-    let folder = match path.parent() {
+    write: impl FnOnce(&mut TemporaryFile) -> Result<(), OutputError>,
+) -> Result<(), OutputError> {
+    let failed = OutputError::io("write", path);
+    let mut writer = match temporary(path) {
+        Ok(file) => BufWriter::new(file),
+        Err(error) => return Err(failed(error)),
+    };
+    write(&mut writer)?;
+    persist(writer, path).map_err(failed)
+}
+
+/// A file that is not yet where it is going to be.
+pub(crate) type TemporaryFile = BufWriter<tempfile::NamedTempFile>;
+
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
-    };
+    }
+}
+
+fn temporary(path: &Path) -> io::Result<tempfile::NamedTempFile> {
     let mut temporary = tempfile::Builder::new();
     temporary.prefix(TEMPORARY.0).suffix(TEMPORARY.1);
     // Temporary files are private by default; results get the permissions of any new file.
@@ -43,13 +65,15 @@ fn try_atomic_write(
     #[cfg(unix)]
     temporary.permissions(public);
 
-    let mut writer = BufWriter::new(temporary.tempfile_in(folder)?);
-    write(&mut writer)?;
+    temporary.tempfile_in(folder_of(path))
+}
+
+fn persist(writer: TemporaryFile, path: &Path) -> io::Result<()> {
     let temporary = writer.into_inner().map_err(|error| error.into_error())?;
     temporary.as_file().sync_all()?;
     temporary.persist(path).map_err(|error| error.error)?;
     #[cfg(unix)]
-    File::open(folder)?.sync_all()?;
+    File::open(folder_of(path))?.sync_all()?;
     Ok(())
 }
 

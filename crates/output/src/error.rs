@@ -266,7 +266,7 @@ pub enum TableProblem {
 
 impl OutputError {
     /// Attaches what was tried, and on which path, to a system error.
-    pub(crate) fn io(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self {
+    pub(crate) fn io(action: &'static str, path: &Path) -> impl Fn(std::io::Error) -> Self {
         move |source| Self::Io {
             action,
             path: path.to_path_buf(),

@@ -6,11 +6,11 @@ use std::ops::Range;
 
 use jstsph_tensor::{Mat3, Vec3};
 
-use crate::OutputError;
 use crate::error::{require_finite, require_length};
+use crate::{OutputError, Values};
 
 /// A named field with one entry per particle.
-pub type Field<'a, T> = (Cow<'a, str>, Cow<'a, [T]>);
+pub type Field<'a, T> = (Cow<'a, str>, Values<'a, T>);
 
 /// The particles of one instant with any number of fields, all in SI units.
 ///
@@ -31,7 +31,7 @@ pub struct Frame<'a> {
     /// Number of steps done.
     pub step: u64,
     /// Current positions, m.
-    pub positions: Cow<'a, [Vec3]>,
+    pub positions: Values<'a, Vec3>,
     /// Scalar fields.
     pub scalars: Vec<Field<'a, f64>>,
     /// Vector fields.
@@ -55,8 +55,8 @@ pub enum Lattice<'a> {
 }
 
 impl<'a> Frame<'a> {
-    /// A frame without fields; `time` in s, `positions` in m, borrowed or owned.
-    pub fn new(time: f64, step: u64, positions: impl Into<Cow<'a, [Vec3]>>) -> Self {
+    /// A frame without fields; `time` in s, `positions` in m, borrowed, owned or in pieces.
+    pub fn new(time: f64, step: u64, positions: impl Into<Values<'a, Vec3>>) -> Self {
         Self {
             time,
             step,
@@ -68,34 +68,34 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Adds a scalar field, borrowed or owned.
+    /// Adds a scalar field, borrowed, owned or in pieces.
     #[must_use]
     pub fn scalar(
         mut self,
         name: impl Into<Cow<'a, str>>,
-        values: impl Into<Cow<'a, [f64]>>,
+        values: impl Into<Values<'a, f64>>,
     ) -> Self {
         self.scalars.push((name.into(), values.into()));
         self
     }
 
-    /// Adds a vector field, borrowed or owned.
+    /// Adds a vector field, borrowed, owned or in pieces.
     #[must_use]
     pub fn vector(
         mut self,
         name: impl Into<Cow<'a, str>>,
-        values: impl Into<Cow<'a, [Vec3]>>,
+        values: impl Into<Values<'a, Vec3>>,
     ) -> Self {
         self.vectors.push((name.into(), values.into()));
         self
     }
 
-    /// Adds a tensor field, borrowed or owned.
+    /// Adds a tensor field, borrowed, owned or in pieces.
     #[must_use]
     pub fn tensor(
         mut self,
         name: impl Into<Cow<'a, str>>,
-        values: impl Into<Cow<'a, [Mat3]>>,
+        values: impl Into<Values<'a, Mat3>>,
     ) -> Self {
         self.tensors.push((name.into(), values.into()));
         self
@@ -115,22 +115,32 @@ impl<'a> Frame<'a> {
     /// [`OutputError::NotFinite`], [`OutputError::FieldLength`], [`OutputError::DuplicateName`] or
     /// [`OutputError::CellPoint`], for the first offence found.
     pub fn check(&self) -> Result<(), OutputError> {
-        self.check_magnitude(f64::MAX)
-    }
-
-    /// [`Self::check`], also refusing values beyond `largest`.
-    pub(crate) fn check_magnitude(&self, largest: f64) -> Result<(), OutputError> {
-        let particles = self.positions.len();
-        require_finite("time", [self.time])?;
-        check_values("position", &self.positions, particles, largest)?;
+        self.check_form()?;
+        check_all("position", &self.positions)?;
         for (name, values) in &self.scalars {
-            check_values(name, values, particles, largest)?;
+            check_all(name, values)?;
         }
         for (name, values) in &self.vectors {
-            check_values(name, values, particles, largest)?;
+            check_all(name, values)?;
         }
         for (name, values) in &self.tensors {
-            check_values(name, values, particles, largest)?;
+            check_all(name, values)?;
+        }
+        Ok(())
+    }
+
+    /// [`Self::check`] without the values of the fields.
+    pub(crate) fn check_form(&self) -> Result<(), OutputError> {
+        let particles = self.positions.len();
+        require_finite("time", [self.time])?;
+        for (name, values) in &self.scalars {
+            require_length(name, values.len(), particles)?;
+        }
+        for (name, values) in &self.vectors {
+            require_length(name, values.len(), particles)?;
+        }
+        for (name, values) in &self.tensors {
+            require_length(name, values.len(), particles)?;
         }
         self.check_names()?;
         match self.lattice {
@@ -157,7 +167,7 @@ impl<'a> Frame<'a> {
 }
 
 /// A quantity made of a fixed number of components.
-pub(crate) trait Components: Copy {
+pub(crate) trait Components: Copy + Send + Sync {
     /// Names of the components in writing order; empty for a scalar.
     const NAMES: &'static [&'static str];
 
@@ -190,14 +200,24 @@ impl Components for Mat3 {
     }
 }
 
-/// Some of the numbers that [`flatten`] gives.
-pub(crate) fn flatten_range<T: Components>(values: &[T], range: Range<usize>) -> Vec<f64> {
+/// Some of the numbers that [`flatten`] gives, none of them beyond `largest`.
+///
+/// # Errors
+/// [`OutputError::NotFinite`].
+pub(crate) fn flatten_range<T: Components>(
+    name: &str,
+    values: &Values<'_, T>,
+    range: Range<usize>,
+    largest: f64,
+) -> Result<Vec<f64>, OutputError> {
     let width = T::NAMES.len().max(1);
     let (first, last) = (range.start / width, range.end.div_ceil(width));
-    let mut flat = flatten(&values[first..last]);
+    let values = values.get(first..last);
+    check_values(name, &values, first, largest)?;
+    let mut flat = flatten(&values);
     flat.truncate(range.end - first * width);
     flat.drain(..range.start - first * width);
-    flat
+    Ok(flat)
 }
 
 /// All components of all particles in writing order.
@@ -209,13 +229,24 @@ pub(crate) fn flatten<T: Components>(values: &[T]) -> Vec<f64> {
     flat
 }
 
+/// Entries that are read at once.
+const PIECE: usize = 1 << 13;
+
+fn check_all<T: Components>(name: &str, values: &Values<'_, T>) -> Result<(), OutputError> {
+    for first in (0..values.len()).step_by(PIECE) {
+        let piece = values.get(first..values.len().min(first + PIECE));
+        check_values(name, &piece, first, f64::MAX)?;
+    }
+    Ok(())
+}
+
+/// Checks entries of which the first has the index `first`.
 fn check_values<T: Components>(
     name: &str,
     values: &[T],
-    particles: usize,
+    first: usize,
     largest: f64,
 ) -> Result<(), OutputError> {
-    require_length(name, values.len(), particles)?;
     let mut components = Vec::with_capacity(9);
     for (index, value) in values.iter().enumerate() {
         components.clear();
@@ -224,7 +255,7 @@ fn check_values<T: Components>(
         if let Some(&value) = bad {
             return Err(OutputError::NotFinite {
                 field: name.to_owned(),
-                index,
+                index: first + index,
                 value,
             });
         }

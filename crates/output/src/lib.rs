@@ -49,6 +49,7 @@ mod restart;
 mod stored;
 mod summary;
 mod table;
+mod values;
 mod vtkhdf;
 mod vtu;
 
@@ -67,5 +68,6 @@ pub use restart::{
 pub use stored::{StoredCells, StoredFrame, read_vtu};
 pub use summary::{Energies, Extremes, Status, Summary};
 pub use table::{Table, TableWriter, read_table};
+pub use values::{Pieces, Values};
 pub use vtkhdf::{HAS_VTKHDF, write_vtkhdf};
 pub use vtu::{CellKind, FrameOptions, Precision, write_vtu};

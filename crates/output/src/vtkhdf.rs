@@ -36,9 +36,9 @@ mod file {
 
     use hdf5_pure::{AttrValue, DatasetBuilder, Error, FileBuilder};
 
-    use crate::frame::{Components, flatten};
+    use crate::frame::{Components, flatten_range};
     use crate::vtu::CellArrays;
-    use crate::{Frame, FrameOptions, OutputError, Precision, atomic_write};
+    use crate::{Frame, FrameOptions, OutputError, Precision, Values, atomic_write};
 
     /// Values of a compressed chunk, at most.
     const CHUNK: usize = 1 << 16;
@@ -48,12 +48,9 @@ mod file {
         frame: &Frame,
         options: FrameOptions,
     ) -> Result<(), OutputError> {
-        frame.check_magnitude(match options.precision {
-            Precision::F32 => f64::from(f32::MAX),
-            Precision::F64 => f64::MAX,
-        })?;
+        frame.check_form()?;
         let cells = CellArrays::new(frame, options.cells)?;
-        let file = build(frame, &cells, options);
+        let file = build(frame, &cells, options)?;
         atomic_write(path, |writer| {
             file.finish_to(writer).map_err(|error| match error {
                 Error::Io(error) => error,
@@ -62,7 +59,11 @@ mod file {
         })
     }
 
-    fn build(frame: &Frame, cells: &CellArrays, options: FrameOptions) -> FileBuilder {
+    fn build(
+        frame: &Frame,
+        cells: &CellArrays,
+        options: FrameOptions,
+    ) -> Result<FileBuilder, OutputError> {
         let mut file = FileBuilder::new();
         let mut grid = file.create_group("VTKHDF");
         grid.set_attr("Version", AttrValue::I64Array(vec![2, 2]));
@@ -74,37 +75,42 @@ mod file {
             grid.create_dataset(name).with_i64_data(&[number as i64]);
         };
         count("NumberOfPoints", frame.positions.len());
-        count("NumberOfCells", cells.types.len());
-        count("NumberOfConnectivityIds", cells.connectivity.len());
+        count("NumberOfCells", cells.count());
+        count("NumberOfConnectivityIds", cells.corners());
         let whole = |dataset: &mut DatasetBuilder, values: usize| {
             compress(dataset, &[values], options);
         };
         let connectivity = grid.create_dataset("Connectivity");
-        whole(
-            connectivity.with_i64_data(&cells.connectivity),
-            cells.connectivity.len(),
-        );
+        let corners = cells.connectivity(0..cells.corners());
+        whole(connectivity.with_i64_data(&corners), corners.len());
         // Here the list of ends has a beginning.
-        let offsets: Vec<i64> = [0].iter().chain(&cells.offsets).copied().collect();
+        let ends = cells.ends(0..cells.count());
+        let offsets: Vec<i64> = [0].into_iter().chain(ends).collect();
         whole(
             grid.create_dataset("Offsets").with_i64_data(&offsets),
             offsets.len(),
         );
+        let types = vec![cells.kind(); cells.count()];
         whole(
-            grid.create_dataset("Types").with_u8_data(&cells.types),
-            cells.types.len(),
+            grid.create_dataset("Types").with_u8_data(&types),
+            types.len(),
         );
-        floats(grid.create_dataset("Points"), &frame.positions, options);
+        floats(
+            grid.create_dataset("Points"),
+            "position",
+            &frame.positions,
+            options,
+        )?;
 
         let mut data = grid.create_group("PointData");
         for (name, values) in &frame.scalars {
-            floats(data.create_dataset(name), values, options);
+            floats(data.create_dataset(name), name, values, options)?;
         }
         for (name, values) in &frame.vectors {
-            floats(data.create_dataset(name), values, options);
+            floats(data.create_dataset(name), name, values, options)?;
         }
         for (name, values) in &frame.tensors {
-            floats(data.create_dataset(name), values, options);
+            floats(data.create_dataset(name), name, values, options)?;
         }
         grid.add_group(data.finish());
 
@@ -118,11 +124,18 @@ mod file {
             .with_i64_data(&[frame.step as i64]);
         grid.add_group(instant.finish());
         file.add_group(grid.finish());
-        file
+        Ok(file)
     }
 
-    fn floats<T: Components>(dataset: &mut DatasetBuilder, values: &[T], options: FrameOptions) {
-        let flat = flatten(values);
+    fn floats<T: Components>(
+        dataset: &mut DatasetBuilder,
+        name: &str,
+        values: &Values<'_, T>,
+        options: FrameOptions,
+    ) -> Result<(), OutputError> {
+        let width = T::NAMES.len().max(1);
+        let largest = options.precision.largest();
+        let flat = flatten_range(name, values, 0..values.len() * width, largest)?;
         match options.precision {
             #[expect(clippy::cast_possible_truncation, reason = "asked for, and in range")]
             Precision::F32 => {
@@ -135,6 +148,7 @@ mod file {
             0 => compress(dataset, &[values.len()], options),
             components => compress(dataset, &[values.len(), components], options),
         }
+        Ok(())
     }
 
     /// Shape of an array, in compressed chunks of whole rows if asked for.
@@ -155,6 +169,7 @@ mod file {
     #[cfg(test)]
     mod tests {
         use super::*;
+        use crate::frame::flatten;
         use crate::{CellKind, Lattice};
         use jstsph_tensor::{Mat3, Vec3};
 

@@ -1,19 +1,18 @@
 //! ParaView frames: VTK unstructured grids, appended raw binary, optionally compressed.
 
-use std::fmt::Write as _;
-use std::io::{self, Write};
+use std::io::{Seek, SeekFrom, Write};
 use std::ops::Range;
 use std::path::Path;
 
-use flate2::Compression;
-use flate2::write::ZlibEncoder;
+use crate::OutputError;
+use crate::atomic::{TemporaryFile, atomic_file};
+use crate::frame::{Frame, Lattice};
 
-use crate::frame::{Components, Frame, Lattice, flatten_range};
-use crate::{OutputError, atomic_write};
+#[cfg(test)]
+use encoder::BLOCK;
+use encoder::Encoder;
 
-/// Bytes per compressed block: large enough that the block table costs nothing, small enough that
-/// a reader need not hold two copies of a large array.
-const BLOCK: usize = 1 << 18;
+mod encoder;
 
 /// Floating-point width of the fields and positions in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -23,6 +22,16 @@ pub enum Precision {
     /// 64 bits: the simulation's own values, bit for bit.
     #[default]
     F64,
+}
+
+impl Precision {
+    /// The largest number.
+    pub(crate) fn largest(self) -> f64 {
+        match self {
+            Self::F32 => f64::from(f32::MAX),
+            Self::F64 => f64::MAX,
+        }
+    }
 }
 
 /// What the particles are shown as in ParaView.
@@ -69,27 +78,41 @@ impl Default for FrameOptions {
 /// asked for), [`OutputError::NoLattice`], [`OutputError::Io`]. In each case nothing is written.
 ///
 /// # Cost
-/// The encoded arrays are held in memory until the file is complete.
+/// Arrays are read, compressed and written some blocks of a quarter of a megabyte at a time; on a thread
+/// of a rayon pool all its threads do so. The bytes do not depend on it.
 pub fn write_vtu(path: &Path, frame: &Frame, options: FrameOptions) -> Result<(), OutputError> {
-    frame.check_magnitude(match options.precision {
-        Precision::F32 => f64::from(f32::MAX),
-        Precision::F64 => f64::MAX,
-    })?;
+    frame.check_form()?;
     let cells = CellArrays::new(frame, options.cells)?;
-    let mut encoder = Encoder::new(options);
-    let xml = describe(frame, &cells, &mut encoder).map_err(OutputError::io("encode", path))?;
-    atomic_write(path, |writer| {
-        writer.write_all(xml.as_bytes())?;
-        // Readers take the byte right after the underscore as the first of the data.
-        writer.write_all(b"  <AppendedData encoding=\"raw\">\n_")?;
-        writer.write_all(&encoder.appended)?;
-        writer.write_all(b"\n  </AppendedData>\n</VTKFile>\n")
+    let failed = OutputError::io("write", path);
+    atomic_file(path, |file| {
+        // Where the arrays begin is known when they are written; the length of the text does not change.
+        let blank = describe(frame, &cells, &mut Encoder::blank(options), options)?;
+        file.write_all(&blank).map_err(&failed)?;
+        let text = {
+            let mut encoder = Encoder::new(options, path, file)?;
+            describe(frame, &cells, &mut encoder, options)?
+        };
+        finish(file, &text).map_err(&failed)
     })
 }
 
-/// The XML part up to the appended data, filling the encoder on the way.
-fn describe(frame: &Frame, cells: &CellArrays, encoder: &mut Encoder) -> io::Result<String> {
-    let compressor = if encoder.options.compression {
+/// Ends the file and puts its beginning in place.
+fn finish(file: &mut TemporaryFile, text: &[u8]) -> std::io::Result<()> {
+    file.write_all(b"\n  </AppendedData>\n</VTKFile>\n")?;
+    file.seek(SeekFrom::Start(0))?;
+    file.write_all(text)?;
+    file.seek(SeekFrom::End(0))?;
+    Ok(())
+}
+
+/// The text up to the appended data, which the encoder writes on the way.
+fn describe(
+    frame: &Frame,
+    cells: &CellArrays<'_>,
+    encoder: &mut Encoder<'_>,
+    options: FrameOptions,
+) -> Result<Vec<u8>, OutputError> {
+    let compressor = if options.compression {
         " compressor=\"vtkZLibDataCompressor\""
     } else {
         ""
@@ -118,7 +141,7 @@ fn describe(frame: &Frame, cells: &CellArrays, encoder: &mut Encoder) -> io::Res
     line("    </FieldData>");
     line(&format!(
         "    <Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{}\">",
-        cells.types.len()
+        cells.count()
     ));
     line("      <PointData>");
     elements.fields.iter().rev().for_each(|field| line(field));
@@ -131,7 +154,9 @@ fn describe(frame: &Frame, cells: &CellArrays, encoder: &mut Encoder) -> io::Res
     line("      </Cells>");
     line("    </Piece>");
     line("  </UnstructuredGrid>");
-    Ok(xml)
+    // Readers take the byte right after the underscore as the first of the data.
+    xml.push_str("  <AppendedData encoding=\"raw\">\n_");
+    Ok(xml.into_bytes())
 }
 
 /// The elements that point into the appended data, each group last first.
@@ -148,11 +173,17 @@ impl Elements {
     /// attribute by another number, which may be the offset of a later array: with the arrays in the order
     /// of the elements it exchanges fields of uncompressed files without a word. This way the element that
     /// it looks for always comes before those that it has changed, and it takes the first.
-    fn encode(frame: &Frame, cells: &CellArrays, encoder: &mut Encoder) -> io::Result<Self> {
+    fn encode(
+        frame: &Frame,
+        cells: &CellArrays<'_>,
+        encoder: &mut Encoder<'_>,
+    ) -> Result<Self, OutputError> {
         let cells = [
-            encoder.bytes("types", &cells.types)?,
-            encoder.integers("offsets", &cells.offsets)?,
-            encoder.integers("connectivity", &cells.connectivity)?,
+            encoder.bytes("types", cells.count(), cells.kind())?,
+            encoder.integers("offsets", cells.count(), |range| cells.ends(range))?,
+            encoder.integers("connectivity", cells.corners(), |range| {
+                cells.connectivity(range)
+            })?,
         ];
         let points = encoder.floats("Points", &frame.positions)?;
         let mut fields = Vec::new();
@@ -173,149 +204,70 @@ impl Elements {
     }
 }
 
-/// Connectivity of the cells in VTK's three arrays.
-pub(crate) struct CellArrays {
-    pub(crate) connectivity: Vec<i64>,
-    /// End of each cell in the connectivity.
-    pub(crate) offsets: Vec<i64>,
-    pub(crate) types: Vec<u8>,
+/// Connectivity of the cells in VTK's three arrays, of which only pieces are made.
+pub(crate) enum CellArrays<'a> {
+    /// As many vertices.
+    Vertices(usize),
+    Quads(&'a [[u32; 4]]),
+    Hexahedra(&'a [[u32; 8]]),
 }
 
-impl CellArrays {
-    pub(crate) fn new(frame: &Frame, kind: CellKind) -> Result<Self, OutputError> {
-        // Cell types of VTK's file formats documentation.
-        const VERTEX: u8 = 1;
-        const QUAD: u8 = 9;
-        const HEXAHEDRON: u8 = 12;
+impl<'a> CellArrays<'a> {
+    pub(crate) fn new(frame: &Frame<'a>, kind: CellKind) -> Result<Self, OutputError> {
         match (kind, frame.lattice) {
-            (CellKind::Vertices, _) => {
-                let vertices: Vec<[u32; 1]> =
-                    (0..frame.positions.len()).map(|a| [a as u32]).collect();
-                Ok(Self::of(&vertices, VERTEX))
-            }
-            (CellKind::Lattice, Lattice::Quads(cells)) => Ok(Self::of(cells, QUAD)),
-            (CellKind::Lattice, Lattice::Hexahedra(cells)) => Ok(Self::of(cells, HEXAHEDRON)),
+            (CellKind::Vertices, _) => Ok(Self::Vertices(frame.positions.len())),
+            (CellKind::Lattice, Lattice::Quads(cells)) => Ok(Self::Quads(cells)),
+            (CellKind::Lattice, Lattice::Hexahedra(cells)) => Ok(Self::Hexahedra(cells)),
             (CellKind::Lattice, Lattice::None) => Err(OutputError::NoLattice),
         }
     }
 
-    fn of<const N: usize>(cells: &[[u32; N]], cell_type: u8) -> Self {
-        Self {
-            connectivity: cells
-                .iter()
-                .flatten()
-                .map(|&point| i64::from(point))
-                .collect(),
-            offsets: (1..=cells.len()).map(|cell| (cell * N) as i64).collect(),
-            types: vec![cell_type; cells.len()],
-        }
-    }
-}
-
-/// Collects the appended data and writes the elements that point into it.
-struct Encoder {
-    options: FrameOptions,
-    appended: Vec<u8>,
-}
-
-impl Encoder {
-    fn new(options: FrameOptions) -> Self {
-        Self {
-            options,
-            appended: Vec::new(),
+    /// The type of every cell, from VTK's file formats documentation.
+    pub(crate) fn kind(&self) -> u8 {
+        match self {
+            Self::Vertices(_) => 1,
+            Self::Quads(_) => 9,
+            Self::Hexahedra(_) => 12,
         }
     }
 
-    fn floats<T: Components>(&mut self, name: &str, values: &[T]) -> io::Result<String> {
-        let (kind, size) = match self.options.precision {
-            Precision::F32 => ("Float32", 4),
-            Precision::F64 => ("Float64", 8),
-        };
-        let count = values.len() * T::NAMES.len().max(1);
-        let piece = |range: Range<usize>| {
-            let numbers = flatten_range(values, range).into_iter();
-            if size == 4 {
-                numbers.flat_map(|v| (v as f32).to_le_bytes()).collect()
-            } else {
-                numbers.flat_map(f64::to_le_bytes).collect()
-            }
-        };
-        self.array((kind, name, T::NAMES), (count, size), piece)
-    }
-
-    fn integers(&mut self, name: &str, values: &[i64]) -> io::Result<String> {
-        let piece = |range: Range<usize>| {
-            let numbers = values[range].iter();
-            numbers.flat_map(|v| v.to_le_bytes()).collect()
-        };
-        self.array(("Int64", name, &[]), (values.len(), 8), piece)
-    }
-
-    fn bytes(&mut self, name: &str, values: &[u8]) -> io::Result<String> {
-        let piece = |range: Range<usize>| values[range].to_vec();
-        self.array(("UInt8", name, &[]), (values.len(), 1), piece)
-    }
-
-    /// Appends `count` numbers of `size` bytes; `piece` gives the bytes of some of them, so that an
-    /// array is never held in memory as a whole beside its values.
-    fn array(
-        &mut self,
-        (kind, name, components): (&str, &str, &[&str]),
-        (count, size): (usize, usize),
-        piece: impl Fn(Range<usize>) -> Vec<u8>,
-    ) -> io::Result<String> {
-        let offset = self.appended.len();
-        let step = BLOCK / size;
-        let blocks = (0..count)
-            .step_by(step)
-            .map(|start| piece(start..count.min(start + step)));
-        if self.options.compression {
-            self.append_compressed(count * size, blocks)?;
-        } else {
-            self.append_number(count * size);
-            blocks.for_each(|block| self.appended.extend(block));
+    /// Number of cells.
+    pub(crate) fn count(&self) -> usize {
+        match self {
+            Self::Vertices(count) => *count,
+            Self::Quads(cells) => cells.len(),
+            Self::Hexahedra(cells) => cells.len(),
         }
-        let mut element = format!(
-            "        <DataArray type=\"{kind}\" Name=\"{}\"",
-            escape_xml(name)
-        );
-        if !components.is_empty() {
-            // Writing to a string cannot fail.
-            let _ = write!(element, " NumberOfComponents=\"{}\"", components.len());
-            for (i, component) in components.iter().enumerate() {
-                let _ = write!(element, " ComponentName{i}=\"{component}\"");
-            }
-        }
-        let _ = write!(element, " format=\"appended\" offset=\"{offset}\"/>");
-        Ok(element)
     }
 
-    /// Block table (count, size, size of a last partial block, compressed sizes), then the blocks.
-    fn append_compressed(
-        &mut self,
-        bytes: usize,
-        blocks: impl Iterator<Item = Vec<u8>>,
-    ) -> io::Result<()> {
-        let blocks = blocks
-            .map(|block| {
-                let mut zlib = ZlibEncoder::new(Vec::new(), Compression::fast());
-                zlib.write_all(&block)?;
-                zlib.finish()
-            })
-            .collect::<io::Result<Vec<_>>>()?;
-        self.append_number(blocks.len());
-        self.append_number(BLOCK);
-        self.append_number(bytes % BLOCK);
-        for block in &blocks {
-            self.append_number(block.len());
+    /// Corners of a cell.
+    fn width(&self) -> usize {
+        match self {
+            Self::Vertices(_) => 1,
+            Self::Quads(_) => 4,
+            Self::Hexahedra(_) => 8,
         }
-        self.appended.extend(blocks.into_iter().flatten());
-        Ok(())
     }
 
-    fn append_number(&mut self, number: usize) {
-        self.appended
-            .extend_from_slice(&(number as u64).to_le_bytes());
+    /// Corners of all cells.
+    pub(crate) fn corners(&self) -> usize {
+        self.count() * self.width()
+    }
+
+    /// Ends of some cells in the connectivity.
+    pub(crate) fn ends(&self, cells: Range<usize>) -> Vec<i64> {
+        let width = self.width();
+        cells.map(|cell| ((cell + 1) * width) as i64).collect()
+    }
+
+    /// Some of the corners, cell by cell.
+    pub(crate) fn connectivity(&self, corners: Range<usize>) -> Vec<i64> {
+        let wide = |points: &[u32]| points.iter().map(|&point| i64::from(point)).collect();
+        match self {
+            Self::Vertices(_) => corners.map(|point| point as i64).collect(),
+            Self::Quads(cells) => wide(&cells.as_flattened()[corners]),
+            Self::Hexahedra(cells) => wide(&cells.as_flattened()[corners]),
+        }
     }
 }
 

@@ -128,7 +128,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!(
             "{} = {:.4} mm",
             probe.name,
-            1e3 * simulation.probe(probe, &fields)[0]
+            1e3 * simulation.probe(probe)[0]
         );
     }
     let largest = fields

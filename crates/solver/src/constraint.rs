@@ -1,15 +1,14 @@
 //! What fixes momenta from outside: prescribed velocities and contact with rigid obstacles.
 
-use std::ops::Range;
-
 use jstsph_contact::{CachedGap, ContactStep, Exchange, Surface, Wall};
 use jstsph_tensor::Vec3;
 
+use crate::books::{Impulse, Ledger, Met, Page};
 use crate::force::vector;
 use crate::model::{Condition, ConditionKind, Model, ModelObstacle};
-use crate::parallel;
+use crate::parallel::{self, CHUNK};
 use crate::reference::{BodyReference, Reference};
-use crate::state::{ContactSlot, Impulse, Ledger, State};
+use crate::state::State;
 
 /// Gap below which a particle touches a wall, as a fraction of the spacing: a node that lies on
 /// the wall must count as touching, or it keeps an inward momentum that its strains feel.
@@ -51,7 +50,39 @@ impl Prescribed {
         self.conditions.len()
     }
 
-    /// Sets the prescribed components of the momentum to those at `time` and books the impulse
+    /// Particles of the simulation that conditions hold, each with the condition.
+    pub(crate) fn held(&self, reference: &Reference) -> impl Iterator<Item = (usize, usize)> {
+        let conditions = self.conditions.iter().enumerate();
+        conditions.flat_map(|(k, condition)| {
+            let first = reference.bodies[condition.body].particles.start;
+            let particles = condition.particles.iter();
+            particles.map(move |&particle| (first + particle as usize, k))
+        })
+    }
+
+    /// Sets the components of a momentum that a condition prescribes to those at `time`, and returns the
+    /// change.
+    pub(crate) fn hold(
+        &self,
+        condition: usize,
+        (density, position): (f64, &Vec3),
+        time: f64,
+        momentum: &mut Vec3,
+    ) -> Vec3 {
+        let mut change = Vec3::zeros();
+        if let ConditionKind::Velocity(components) = &self.conditions[condition].kind {
+            for (axis, signal) in components.iter().enumerate() {
+                if let Some(signal) = signal {
+                    let prescribed = density * signal.at(time, position);
+                    change[axis] = prescribed - momentum[axis];
+                    momentum[axis] = prescribed;
+                }
+            }
+        }
+        change
+    }
+
+    /// Sets the prescribed components of all momenta to those at `time` and books the impulse
     /// with the given factor. Later conditions win where they overlap.
     pub(crate) fn apply(
         &self,
@@ -61,38 +92,17 @@ impl Prescribed {
         momentum: &mut [Vec3],
         ledger: &mut Ledger,
     ) {
-        self.apply_where(reference, (time, factor), momentum, ledger, |_, _| true);
-    }
-
-    /// The same for the particles of each body, counted in it, for which `chosen(body, particle)` holds.
-    pub(crate) fn apply_where(
-        &self,
-        reference: &Reference,
-        (time, factor): (f64, f64),
-        momentum: &mut [Vec3],
-        ledger: &mut Ledger,
-        chosen: impl Fn(usize, usize) -> bool,
-    ) {
         for (k, condition) in self.conditions.iter().enumerate() {
-            let ConditionKind::Velocity(components) = &condition.kind else {
-                continue;
-            };
             let body = &reference.bodies[condition.body];
             let mut total = Vec3::zeros();
             for &particle in &condition.particles {
-                if !chosen(condition.body, particle as usize) {
-                    continue;
-                }
                 let a = body.particles.start + particle as usize;
-                let mut change = Vec3::zeros();
-                for (axis, signal) in components.iter().enumerate() {
-                    if let Some(signal) = signal {
-                        let prescribed = body.density * signal.at(time, &reference.position[a]);
-                        change[axis] = prescribed - momentum[a][axis];
-                        momentum[a][axis] = prescribed;
-                    }
+                let place = (body.density, &reference.position[a]);
+                let change = self.hold(k, place, time, &mut momentum[a]);
+                // None are kept before the first kick of the leapfrog.
+                if let Some(impulse) = ledger.impulse.get_mut(a) {
+                    impulse.external += change * factor;
                 }
-                ledger.impulse[a].external += change * factor;
                 total += change * (factor * reference.volume[a]);
             }
             ledger.condition_impulse[k] += total;
@@ -132,15 +142,14 @@ impl Obstacles {
         self.parts.len()
     }
 
-    /// Slots of a particle before anything happened.
-    pub(crate) fn new_slots(&self, particles: usize) -> Vec<ContactSlot> {
-        let slot = ContactSlot {
-            cache: CachedGap::default(),
-            impulse: Vec3::zeros(),
-            given: Exchange::default(),
-            corrections: 0,
-        };
-        vec![slot; particles * self.parts.len()]
+    /// Whether a particle in its reference position is nearer to a wall than its spacing.
+    pub(crate) fn is_near(&self, reference: &Reference, a: usize) -> bool {
+        let spacing = reference.bodies[reference.owner_of_particle(a).0].spacing;
+        let x = &reference.position[a];
+        self.parts.iter().any(|&(o, part)| {
+            let surface = &self.obstacles[o].obstacle.surface;
+            surface.gap_of(part, x).distance < spacing
+        })
     }
 
     /// The obstacles.
@@ -170,8 +179,8 @@ impl Obstacles {
     }
 
     /// Corrects the momentum (and, where a particle is deep in a wall, the position) of every
-    /// particle. `time` and `dt` are the beginning and length of the travel that these momenta
-    /// are going to make.
+    /// particle, and keeps the impulses. `time` and `dt` are the beginning and length of the travel that
+    /// these momenta are going to make.
     pub(crate) fn apply(
         &self,
         reference: &Reference,
@@ -181,13 +190,45 @@ impl Obstacles {
         state: &mut State,
         ledger: &mut Ledger,
     ) {
+        if self.parts.is_empty() {
+            return;
+        }
         let travel = self.travel(time, dt, stage);
-        for (body, range) in reference
-            .bodies
-            .iter()
-            .map(|body| (body, 0..body.particles.len()))
-        {
-            self.meet(&travel, (body, range), reference, state, ledger);
+        let Ledger { impulse, pages, .. } = ledger;
+        for body in &reference.bodies {
+            let near = self.near(&travel, body);
+            let arrays = (
+                &mut state.position[..],
+                &mut state.momentum[..],
+                &mut impulse[..],
+            );
+            let range = body.particles.clone();
+            parallel::for_each_page(range, arrays, pages, |first, x, p, impulse, page| {
+                for (k, ((x, p), impulse)) in x.iter_mut().zip(p).zip(impulse).enumerate() {
+                    near.meet(
+                        page,
+                        (first + k) % CHUNK,
+                        reference.volume[first + k],
+                        (x, p, impulse),
+                    );
+                }
+            });
+        }
+    }
+
+    /// The walls as the particles of a body see them.
+    pub(crate) fn near<'a>(&'a self, travel: &'a Travel, body: &BodyReference) -> Near<'a> {
+        Near {
+            obstacles: self,
+            travel,
+            step: ContactStep {
+                dt: travel.dt,
+                tolerance: CONTACT_TOLERANCE * body.spacing,
+                density: body.density,
+                max_penetration: LARGEST_PENETRATION * body.spacing,
+            },
+            // At least the travel of a particle relative to a wall: see `Wall::resolve_cached`.
+            per_momentum: travel.dt / body.density * REACH_MARGIN,
         }
     }
 
@@ -205,84 +246,78 @@ impl Obstacles {
         }
     }
 
-    /// [`apply`](Self::apply) for a run of the particles of one body.
-    pub(crate) fn meet(
-        &self,
-        travel: &Travel,
-        (body, run): (&BodyReference, Range<usize>),
-        reference: &Reference,
-        state: &mut State,
-        ledger: &mut Ledger,
-    ) {
-        if self.parts.is_empty() {
-            return;
-        }
-        let slots = self.parts.len();
-        let Travel {
-            dt,
-            stage,
-            velocities,
-            speeds,
-        } = *travel;
-        let range = body.particles.start + run.start..body.particles.start + run.end;
-        let step = ContactStep {
-            dt,
-            tolerance: CONTACT_TOLERANCE * body.spacing,
-            density: body.density,
-            max_penetration: LARGEST_PENETRATION * body.spacing,
-        };
-        let volume = &reference.volume[range.clone()];
-        let contact = &mut ledger.contact[range.start * slots..range.end * slots];
-        let particles = (
-            &mut state.position[range.clone()],
-            &mut state.momentum[range.clone()],
-            &mut ledger.impulse[range.clone()],
-        );
-        // At least the travel of a particle relative to a wall: see `Wall::resolve_cached`.
-        let per_momentum = dt / body.density * REACH_MARGIN;
-        parallel::for_each_with_group(particles, contact, slots, |a, x, p, impulse, group| {
-            if stage.begins() {
-                for slot in group.iter_mut() {
-                    slot.given = Exchange::default();
-                }
-            }
-            // Most particles are far from all walls, which takes one root to see.
-            let travel = p.norm() * per_momentum;
-            let far = |(slot, (o, _)): (&ContactSlot, &(usize, usize))| {
-                let reach = step.tolerance + travel + speeds[*o] * dt * REACH_MARGIN;
-                !slot.cache.needs_check(&(*x - self.displacement[*o]), reach)
-            };
-            if group.iter().zip(&self.parts).all(far) {
-                return;
-            }
-            let mut particle = Particle {
-                x,
-                p,
-                impulse,
-                volume: volume[a],
-                stage,
-            };
-            let mut rubbed = false;
-            for (slot, part) in group.iter_mut().zip(&self.parts) {
-                let wall = self.wall(*part, &velocities);
-                let normal = particle.meet(&wall, slot, &step);
-                rubbed |= particle.rub(&wall, slot, normal, &step);
-            }
-            // Friction along one wall may point into another: none is entered in the end.
-            if rubbed {
-                for (slot, part) in group.iter_mut().zip(&self.parts) {
-                    particle.meet(&self.wall(*part, &velocities), slot, &step);
-                }
-            }
-        });
-    }
-
     fn wall(&self, (o, part): (usize, usize), velocities: &[Vec3]) -> Wall<'_> {
         Wall {
             obstacle: &self.obstacles[o].obstacle,
             part,
             displacement: self.displacement[o],
             velocity: velocities[o],
+        }
+    }
+}
+
+/// All walls during one travel of the particles of a body.
+pub(crate) struct Near<'a> {
+    obstacles: &'a Obstacles,
+    travel: &'a Travel,
+    step: ContactStep,
+    per_momentum: f64,
+}
+
+impl Near<'_> {
+    /// Contact and friction of the particle at `place` of a page, with its position, momentum and impulse.
+    #[inline]
+    pub(crate) fn meet(
+        &self,
+        page: &mut Page,
+        place: usize,
+        volume: f64,
+        (x, p, impulse): (&mut Vec3, &mut Vec3, &mut Impulse),
+    ) {
+        let (obstacles, step) = (self.obstacles, &self.step);
+        let parts = &obstacles.parts;
+        let stage = self.travel.stage;
+        let group = place * parts.len()..(place + 1) * parts.len();
+        let Page { gaps, met, .. } = page;
+        if stage.begins()
+            && let Some(met) = met
+        {
+            for slot in &mut met.slots[group.clone()] {
+                slot.given = Exchange::default();
+            }
+        }
+        let gaps = &mut gaps[group.clone()];
+        // Most particles are far from all walls, which takes one root to see.
+        let travel = p.norm() * self.per_momentum;
+        let far = |(gap, (o, _)): (&CachedGap, &(usize, usize))| {
+            let reach =
+                step.tolerance + travel + self.travel.speeds[*o] * self.travel.dt * REACH_MARGIN;
+            !gap.needs_check(&(*x - obstacles.displacement[*o]), reach)
+        };
+        if gaps.iter().zip(parts).all(far) {
+            return;
+        }
+        let mut particle = Particle {
+            x,
+            p,
+            impulse,
+            volume,
+            stage,
+            met,
+            parts: parts.len(),
+        };
+        let mut rubbed = false;
+        for ((gap, part), slot) in gaps.iter_mut().zip(parts).zip(group.clone()) {
+            let wall = obstacles.wall(*part, &self.travel.velocities);
+            let normal = particle.meet(&wall, (gap, slot), step);
+            rubbed |= particle.rub(&wall, slot, normal, step);
+        }
+        // Friction along one wall may point into another: none is entered in the end.
+        if rubbed {
+            for ((gap, part), slot) in gaps.iter_mut().zip(parts).zip(group) {
+                let wall = obstacles.wall(*part, &self.travel.velocities);
+                particle.meet(&wall, (gap, slot), step);
+            }
         }
     }
 }
@@ -302,15 +337,24 @@ struct Particle<'a> {
     impulse: &'a mut Impulse,
     volume: f64,
     stage: Stage,
+    met: &'a mut Option<Box<Met>>,
+    /// Obstacle parts.
+    parts: usize,
 }
 
 impl Particle<'_> {
     /// Applies the contact law and returns its impulse per unit volume.
     #[inline]
-    fn meet(&mut self, wall: &Wall<'_>, slot: &mut ContactSlot, step: &ContactStep) -> Vec3 {
-        let Some(resolution) = wall.resolve_cached(&mut slot.cache, self.x, self.p, step) else {
+    fn meet(
+        &mut self,
+        wall: &Wall<'_>,
+        (gap, slot): (&mut CachedGap, usize),
+        step: &ContactStep,
+    ) -> Vec3 {
+        let Some(resolution) = wall.resolve_cached(gap, self.x, self.p, step) else {
             return Vec3::zeros();
         };
+        let slot = &mut Page::opened(self.met, self.parts).slots[slot];
         let change = resolution.momentum - *self.p;
         *self.p = resolution.momentum;
         let factor = self.stage.factor();
@@ -326,13 +370,12 @@ impl Particle<'_> {
 
     /// Applies friction after an impulse `normal` of the contact law; whether it changed anything.
     #[inline]
-    fn rub(
-        &mut self,
-        wall: &Wall<'_>,
-        slot: &mut ContactSlot,
-        normal: Vec3,
-        step: &ContactStep,
-    ) -> bool {
+    fn rub(&mut self, wall: &Wall<'_>, slot: usize, normal: Vec3, step: &ContactStep) -> bool {
+        // Where there is no slot nothing was ever given.
+        let Some(met) = self.met else {
+            return false;
+        };
+        let slot = &mut met.slots[slot];
         let given = if self.stage == Stage::End {
             // The contact law has already added its part to the impulses of the step.
             slot.given

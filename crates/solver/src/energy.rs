@@ -2,6 +2,7 @@
 
 use jstsph_tensor::{Vec3, double_dot};
 
+use crate::books::Work;
 use crate::heat::HeatProcess;
 use crate::parallel;
 use crate::simulation::Simulation;
@@ -127,11 +128,9 @@ impl Simulation {
         } else {
             0.5 * (kinetic_of(&self.ledger.momentum_before) + after)
         };
-        let work = |of: fn(&crate::state::Work) -> f64| {
-            parallel::sum(self.ledger.work.len(), 0.0, |a| {
-                reference.volume[a] * of(&self.ledger.work[a])
-            })
-        };
+        let work = parallel::sum(reference.volume.len(), Work::default(), |a| {
+            self.ledger.work(a) * reference.volume[a]
+        });
         let coefficient = self.scheme.stabilisation.hourglass;
         let heat = |of: fn(&HeatProcess) -> &Vec<f64>| {
             self.heat.as_ref().map_or(0.0, |heat| {
@@ -152,15 +151,15 @@ impl Simulation {
             plastic: parallel::sum(reference.point_volume.len(), 0.0, |q| {
                 reference.point_volume[q] * self.ledger.plastic_dissipation[q]
             }),
-            numerical: -work(|work| work.numerical),
+            numerical: -work.numerical,
             hourglass: if coefficient == 0.0 {
                 0.0
             } else {
                 force::hourglass_energy(reference, &self.state, coefficient)
             },
-            external: work(|work| work.external),
-            contact: work(|work| work.contact),
-            friction: work(|work| work.friction),
+            external: work.external,
+            contact: work.contact,
+            friction: work.friction,
             thermal: self
                 .heat
                 .as_ref()
@@ -224,7 +223,6 @@ impl Simulation {
     /// Impulse that each obstacle has received from the particles so far, N s, by name.
     #[must_use]
     pub fn obstacle_impulses(&self) -> Vec<(&str, Vec3)> {
-        let slots = self.obstacles.slots();
         let mut totals: Vec<(&str, Vec3)> = self
             .obstacles
             .obstacles()
@@ -233,7 +231,8 @@ impl Simulation {
             .collect();
         for (k, owner) in self.obstacles.owners().enumerate() {
             let on_particles = parallel::sum(self.reference.position.len(), Vec3::zeros(), |a| {
-                self.ledger.contact[a * slots + k].impulse
+                let slot = self.ledger.slot(a, k);
+                slot.map_or_else(Vec3::zeros, |slot| slot.impulse)
             });
             totals[owner].1 -= on_particles;
         }
@@ -253,8 +252,7 @@ impl Simulation {
     #[must_use]
     pub fn position_corrections(&self) -> u64 {
         self.ledger
-            .contact
-            .iter()
+            .slots()
             .map(|slot| u64::from(slot.corrections))
             .sum()
     }

@@ -1,11 +1,11 @@
 //! Fields of the particles as they are written and drawn.
 
+use jstsph_material::{Block, BlockReader, History, Material};
 use jstsph_tensor::{Mat3, Vec3, von_mises};
 
 use crate::parallel;
-use crate::probe::{Field, Probe, ProbeKind};
+use crate::reference::{BodyReference, Shares};
 use crate::simulation::Simulation;
-use crate::stress;
 use crate::time_step::smallest_stretch;
 
 /// Fields per particle at the time of the positions; quantities of the evaluation points are
@@ -34,152 +34,263 @@ pub struct ParticleFields {
     pub wave_speed: Vec<f64>,
 }
 
-/// A vector of `value(i)`.
-fn filled<T: Clone + Send>(items: usize, zero: T, value: impl Fn(usize) -> T + Sync) -> Vec<T> {
-    let mut filled = vec![zero; items];
+/// A vector of `value(i)`, or none at all.
+fn filled<T: Clone + Send>(
+    wanted: bool,
+    items: usize,
+    zero: T,
+    value: impl Fn(usize) -> T + Sync,
+) -> Vec<T> {
+    let mut filled = vec![zero; if wanted { items } else { 0 }];
     parallel::fill(&mut filled, value);
     filled
 }
 
-/// Which fields are computed; the others stay empty. Plastic strain and temperature always are.
-#[derive(Clone, Copy, Debug, Default)]
-struct Wanted {
-    velocity: bool,
-    displacement: bool,
-    deformation_gradient: bool,
-    determinant: bool,
-    stress: bool,
-    wave_speed: bool,
+/// One particle at the time of the positions: its fields, each computed when it is asked for, with the
+/// bits of [`ParticleFields`].
+#[derive(Clone, Copy, Debug)]
+pub struct Particle<'a> {
+    simulation: &'a Simulation,
+    /// Its body, and its indices in the simulation and in the body.
+    body: usize,
+    index: usize,
+    local: usize,
 }
 
-impl Wanted {
-    const ALL: Self = Self {
-        velocity: true,
-        displacement: true,
-        deformation_gradient: true,
-        determinant: true,
-        stress: true,
-        wave_speed: true,
-    };
-
-    /// What the readings of probes take from the fields, and those of these names.
-    fn by(probes: &[Probe], names: &[&str]) -> Self {
-        let named = |name: &str| names.contains(&name);
-        let mut wanted = Self {
-            velocity: named("velocity"),
-            displacement: named("displacement"),
-            deformation_gradient: named("deformation_gradient"),
-            determinant: named("determinant"),
-            stress: ["cauchy_stress", "von_mises_stress", "pressure"]
-                .into_iter()
-                .any(named),
-            wave_speed: named("wave_speed"),
+impl Particle<'_> {
+    /// Velocity, m/s.
+    #[must_use]
+    pub fn velocity(&self) -> Vec3 {
+        let Simulation { state, ledger, .. } = self.simulation;
+        let a = self.index;
+        let momentum = if self.simulation.synchronised {
+            state.momentum[a]
+        } else {
+            (state.momentum[a] + ledger.momentum_before[a]) * 0.5
         };
-        for probe in probes {
-            match &probe.kind {
-                ProbeKind::EdgeRadius { .. } => wanted.deformation_gradient = true,
-                ProbeKind::Statistic { field, .. }
-                | ProbeKind::Point { field, .. }
-                | ProbeKind::Line { field, .. } => match field {
-                    Field::VonMisesStress | Field::Pressure => wanted.stress = true,
-                    Field::WaveSpeed => wanted.wave_speed = true,
-                    Field::Velocity(_) => wanted.velocity = true,
-                    Field::EquivalentPlasticStrain
-                    | Field::Temperature
-                    | Field::Jacobian
-                    | Field::Displacement(_)
-                    | Field::Position(_) => {}
-                },
-                ProbeKind::Extent { .. } | ProbeKind::Radius { .. } => {}
-            }
-        }
-        wanted
+        momentum / self.simulation.reference.density[a]
     }
-}
 
-impl Simulation {
-    /// Computes all fields; allocates, and is meant for output.
+    /// Displacement x − X, m.
     #[must_use]
-    pub fn particle_fields(&self) -> ParticleFields {
-        self.fields(Wanted::ALL)
+    pub fn displacement(&self) -> Vec3 {
+        let simulation = self.simulation;
+        simulation.state.position[self.index] - simulation.reference.position[self.index]
     }
 
-    /// The fields that these probes read and those with these names (of the entries of
-    /// [`ParticleFields`]), the plastic strain and the temperature, with the bits of
-    /// [`particle_fields`](Self::particle_fields) in a fraction of its time; the others are empty.
+    /// F.
     #[must_use]
-    pub fn fields_for(&self, probes: &[Probe], names: &[&str]) -> ParticleFields {
-        self.fields(Wanted::by(probes, names))
+    pub fn deformation_gradient(&self) -> Mat3 {
+        self.mean_tensor(|q| *self.gradient(q))
     }
 
-    fn fields(&self, wanted: Wanted) -> ParticleFields {
-        let (reference, state, work) = (&self.reference, &self.state, &self.work);
-        let (particles, points) = (reference.position.len(), reference.point_volume.len());
-        let mut point_strain = vec![0.0; points];
-        stress::equivalent_plastic_strain(reference, &self.materials, &mut point_strain);
+    /// det F.
+    #[must_use]
+    pub fn determinant(&self) -> f64 {
+        self.mean(|q| self.gradient(q).determinant())
+    }
 
+    /// Cauchy stress, Pa.
+    #[must_use]
+    pub fn cauchy_stress(&self) -> Mat3 {
+        let Simulation {
+            reference, work, ..
+        } = self.simulation;
         // Computed for both ends of a bond rather than kept: that of the points is three times as long.
-        let point_stress = |q: usize| {
-            let f = &state.deformation_gradient[q];
+        self.mean_tensor(|q| {
+            let f = self.gradient(q);
             // σ = P Fᵀ / det F.
             let cauchy = work.scaled_stress[q] * f.transpose()
                 / (reference.point_volume[q] * f.determinant());
             jstsph_tensor::symmetric_part(&cauchy)
-        };
-        let of_particles = |wanted: bool| if wanted { particles } else { 0 };
-        let mut fields = ParticleFields {
-            velocity: filled(of_particles(wanted.velocity), Vec3::zeros(), |a| {
-                let momentum = if self.synchronised {
-                    state.momentum[a]
-                } else {
-                    (state.momentum[a] + self.ledger.momentum_before[a]) * 0.5
-                };
-                momentum / reference.density[a]
-            }),
-            displacement: filled(of_particles(wanted.displacement), Vec3::zeros(), |a| {
-                state.position[a] - reference.position[a]
-            }),
-            deformation_gradient: vec![Mat3::zeros(); of_particles(wanted.deformation_gradient)],
-            determinant: vec![0.0; of_particles(wanted.determinant)],
-            cauchy_stress: vec![Mat3::zeros(); of_particles(wanted.stress)],
-            von_mises_stress: Vec::new(),
-            pressure: Vec::new(),
-            equivalent_plastic_strain: vec![0.0; particles],
-            temperature: state.temperature.clone(),
-            wave_speed: vec![0.0; of_particles(wanted.wave_speed)],
-        };
-        for body in &reference.bodies {
-            let (range, first) = (body.particles.clone(), body.points.start);
-            let shares = &body.shares;
-            let gradient = |q: usize| &state.deformation_gradient[first + q];
-            parallel::fill(&mut fields.equivalent_plastic_strain[range.clone()], |a| {
-                shares.mean(a, |q| point_strain[first + q])
-            });
-            if wanted.deformation_gradient {
-                parallel::fill(&mut fields.deformation_gradient[range.clone()], |a| {
-                    shares.mean_tensor(a, |q| *gradient(q))
-                });
-            }
-            if wanted.determinant {
-                parallel::fill(&mut fields.determinant[range.clone()], |a| {
-                    shares.mean(a, |q| gradient(q).determinant())
-                });
-            }
-            if wanted.stress {
-                parallel::fill(&mut fields.cauchy_stress[range.clone()], |a| {
-                    shares.mean_tensor(a, |q| point_stress(first + q))
-                });
-            }
-            if wanted.wave_speed {
-                parallel::fill(&mut fields.wave_speed[range], |a| {
-                    body.wave_speed / shares.mean(a, |q| smallest_stretch(gradient(q)))
-                });
-            }
+        })
+    }
+
+    /// Von Mises stress, Pa.
+    #[must_use]
+    pub fn von_mises_stress(&self) -> f64 {
+        von_mises(&self.cauchy_stress())
+    }
+
+    /// One third of the trace of the Cauchy stress, Pa: tension positive.
+    #[must_use]
+    pub fn pressure(&self) -> f64 {
+        jstsph_tensor::mean_trace(&self.cauchy_stress())
+    }
+
+    /// Equivalent plastic strain.
+    #[must_use]
+    pub fn equivalent_plastic_strain(&self) -> f64 {
+        let material = &self.simulation.materials[self.body];
+        material.visit_ref(&mut MeanPlasticStrain {
+            shares: &self.owner().shares,
+            particle: self.local,
+        })
+    }
+
+    /// Pressure wave speed in the reference configuration over the smallest stretch (3.17), m/s.
+    #[must_use]
+    pub fn wave_speed(&self) -> f64 {
+        self.owner().wave_speed / self.mean(|q| smallest_stretch(self.gradient(q)))
+    }
+
+    fn owner(&self) -> &BodyReference {
+        &self.simulation.reference.bodies[self.body]
+    }
+
+    /// F of a point of the simulation.
+    #[inline]
+    fn gradient(&self, q: usize) -> &Mat3 {
+        &self.simulation.state.deformation_gradient[q]
+    }
+
+    /// Mean over the points of the particle, which are given by their indices in the simulation.
+    fn mean(&self, field: impl Fn(usize) -> f64) -> f64 {
+        let (owner, first) = (self.owner(), self.owner().points.start);
+        owner.shares.mean(self.local, |q| field(first + q))
+    }
+
+    fn mean_tensor(&self, field: impl Fn(usize) -> Mat3) -> Mat3 {
+        let (owner, first) = (self.owner(), self.owner().points.start);
+        owner.shares.mean_tensor(self.local, |q| field(first + q))
+    }
+}
+
+/// Mean equivalent plastic strain of the points of a particle, from the committed history.
+struct MeanPlasticStrain<'a> {
+    shares: &'a Shares,
+    particle: usize,
+}
+
+impl BlockReader for MeanPlasticStrain<'_> {
+    type Output = f64;
+    fn visit<M: Material>(&mut self, block: &Block<M>) -> f64 {
+        let strain = |q: usize| block.committed[q].equivalent_plastic_strain();
+        self.shares.mean(self.particle, strain)
+    }
+}
+
+/// Largest mean equivalent plastic strain of the particles of a body.
+struct LargestPlasticStrain<'a> {
+    shares: &'a Shares,
+    particles: usize,
+}
+
+impl BlockReader for LargestPlasticStrain<'_> {
+    type Output = f64;
+    fn visit<M: Material>(&mut self, block: &Block<M>) -> f64 {
+        let shares = self.shares;
+        let strain = |q: usize| block.committed[q].equivalent_plastic_strain();
+        parallel::reduce(
+            self.particles,
+            &|range| range.map(|a| shares.mean(a, strain)).fold(0.0, f64::max),
+            &f64::max,
+        )
+    }
+}
+
+impl Simulation {
+    /// The fields of one particle.
+    ///
+    /// # Panics
+    /// If there is no such particle.
+    #[must_use]
+    pub fn particle(&self, particle: usize) -> Particle<'_> {
+        let (body, local) = self.reference.owner_of_particle(particle);
+        Particle {
+            simulation: self,
+            body,
+            index: particle,
+            local,
         }
-        let stress = &fields.cauchy_stress;
-        fields.von_mises_stress = filled(stress.len(), 0.0, |a| von_mises(&stress[a]));
-        fields.pressure = filled(stress.len(), 0.0, |a| jstsph_tensor::mean_trace(&stress[a]));
-        fields
+    }
+
+    /// Computes all fields; allocates, and is meant for output.
+    #[must_use]
+    pub fn particle_fields(&self) -> ParticleFields {
+        self.fields(|_| true)
+    }
+
+    /// The fields with these names (of the entries of [`ParticleFields`]), with the bits of
+    /// [`particle_fields`](Self::particle_fields) in a fraction of its time; the others are empty.
+    #[must_use]
+    pub fn fields_for(&self, names: &[&str]) -> ParticleFields {
+        self.fields(|name| names.contains(&name))
+    }
+
+    fn fields<'a>(&'a self, wanted: impl Fn(&str) -> bool) -> ParticleFields {
+        let particles = self.reference.position.len();
+        let of = |a: usize| self.particle(a);
+        let scalar = |name: &str, value: fn(&Particle<'a>) -> f64| {
+            filled(wanted(name), particles, 0.0, |a| value(&of(a)))
+        };
+        let vector = |name: &str, value: fn(&Particle<'a>) -> Vec3| {
+            filled(wanted(name), particles, Vec3::zeros(), |a| value(&of(a)))
+        };
+        let tensor = |name: &str, value: fn(&Particle<'a>) -> Mat3| {
+            filled(wanted(name), particles, Mat3::zeros(), |a| value(&of(a)))
+        };
+        let invariants = wanted("von_mises_stress") || wanted("pressure");
+        let stress = filled(
+            invariants || wanted("cauchy_stress"),
+            particles,
+            Mat3::zeros(),
+            |a| of(a).cauchy_stress(),
+        );
+        let of_stress = |name: &str, value: fn(&Mat3) -> f64| {
+            filled(wanted(name), particles, 0.0, |a| value(&stress[a]))
+        };
+        ParticleFields {
+            velocity: vector("velocity", Particle::velocity),
+            displacement: vector("displacement", Particle::displacement),
+            deformation_gradient: tensor("deformation_gradient", Particle::deformation_gradient),
+            determinant: scalar("determinant", Particle::determinant),
+            von_mises_stress: of_stress("von_mises_stress", von_mises),
+            pressure: of_stress("pressure", jstsph_tensor::mean_trace),
+            equivalent_plastic_strain: scalar(
+                "equivalent_plastic_strain",
+                Particle::equivalent_plastic_strain,
+            ),
+            temperature: filled(wanted("temperature"), particles, 0.0, |a| {
+                self.state.temperature[a]
+            }),
+            wave_speed: scalar("wave_speed", Particle::wave_speed),
+            cauchy_stress: if wanted("cauchy_stress") {
+                stress
+            } else {
+                Vec::new()
+            },
+        }
+    }
+
+    /// Largest equivalent plastic strain of the particles.
+    #[must_use]
+    pub fn largest_plastic_strain(&self) -> f64 {
+        let bodies = self.reference.bodies.iter().zip(&self.materials);
+        bodies
+            .map(|(body, material)| {
+                material.visit_ref(&mut LargestPlasticStrain {
+                    shares: &body.shares,
+                    particles: body.particles.len(),
+                })
+            })
+            .fold(0.0, f64::max)
+    }
+
+    /// Smallest and largest J of the particles.
+    #[must_use]
+    pub fn jacobian_range(&self) -> (f64, f64) {
+        let jacobian = &self.state.jacobian;
+        parallel::reduce(
+            jacobian.len(),
+            &|range| {
+                let values = jacobian[range].iter();
+                values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), j| {
+                    (low.min(*j), high.max(*j))
+                })
+            },
+            &|a: (f64, f64), b: (f64, f64)| (a.0.min(b.0), a.1.max(b.1)),
+        )
     }
 
     /// First particle quantity that is not finite, with its particle: (quantity, particle).

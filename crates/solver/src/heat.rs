@@ -4,6 +4,7 @@
 use jstsph_material::{Block, BlockReader, Material, MaterialBlock, Property, Thermal};
 use jstsph_tensor::Vec3;
 
+use crate::books::Ledger;
 use crate::constraint::CONTACT_TOLERANCE;
 use crate::model::{Condition, ConditionKind, Heat, Model, ModelObstacle, Quadrature};
 use crate::reference::{BodyReference, Reference};
@@ -323,18 +324,14 @@ impl HeatProcess {
                 } else {
                     &[]
                 };
-                let friction = if settings.friction_heating {
-                    &context.friction_heat[range.clone()]
-                } else {
-                    &[]
-                };
+                let friction = settings.friction_heating.then_some(context.ledger);
                 let generated = &mut self.generated[range.clone()];
                 parallel::for_each_pair(source, generated, |a, source, generated| {
                     let mut heat = share * body.shares.mean(a, |q| plastic[q]);
                     if let Some(rate) = viscous.get(a) {
                         heat += rate * context.dt;
                     }
-                    heat += friction.get(a).copied().unwrap_or(0.0);
+                    heat += friction.map_or(0.0, |ledger| ledger.friction_heat(range.start + a));
                     *source = heat;
                     *generated += heat;
                 });
@@ -569,8 +566,8 @@ pub(crate) struct HeatStep<'a> {
     pub(crate) reference: &'a Reference,
     pub(crate) materials: &'a [MaterialBlock],
     pub(crate) quadrature: Quadrature,
-    /// Energy that friction took from the particles in the last kick, J/m³.
-    pub(crate) friction_heat: &'a [f64],
+    /// What friction took from the particles in the last kick.
+    pub(crate) ledger: &'a Ledger,
     /// Displacements of the obstacles, m.
     pub(crate) displacement: &'a [Vec3],
     /// End and length of the step, s.

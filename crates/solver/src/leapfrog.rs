@@ -4,13 +4,15 @@ use std::ops::Range;
 
 use jstsph_tensor::Vec3;
 
-use crate::constraint::Stage;
+use crate::books::{Impulse, Ledger};
+use crate::constraint::{Obstacles, Prescribed, Stage, Travel};
 use crate::model::Formulation;
+use crate::parallel::{self, CHUNK};
 use crate::profile::Phase;
 use crate::reference::Reference;
-use crate::simulation::{Simulation, work_of};
-use crate::state::{Impulse, Ledger, State, Work, or_zero};
-use crate::{SolverError, parallel, strain};
+use crate::simulation::Simulation;
+use crate::state::{State, or_zero};
+use crate::{SolverError, strain};
 
 /// Which part of a step a kick spans, which decides how its work is booked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,86 +119,104 @@ impl Simulation {
     /// and the books of the kick.
     pub(crate) fn kick(&mut self, kick: Kick, duration: f64, travel: f64) {
         let Self {
+            reference,
             state,
             work,
             ledger,
+            prescribed,
+            obstacles,
+            time,
             ..
         } = self;
-        parallel::for_each_triple(
-            &mut state.momentum,
-            &mut ledger.momentum_before,
-            &mut ledger.impulse,
-            |a, p, before, impulse| {
-                *before = *p;
-                *impulse = Impulse {
-                    numerical: or_zero(&work.dissipation, a) * duration,
-                    external: or_zero(&work.external_force, a) * duration,
-                    ..Impulse::default()
-                };
-                *p += impulse.numerical + impulse.external - work.internal_force[a] * duration;
-            },
-        );
-        let time = self.time;
-        let Self {
-            reference,
-            state,
-            ledger,
-            ..
-        } = self;
-        self.prescribed.apply(
-            reference,
-            time + 0.5 * travel,
-            1.0,
-            &mut state.momentum,
-            ledger,
-        );
-        self.obstacles
-            .apply(reference, time, travel, Stage::Whole, state, ledger);
-
         let all = 0..reference.position.len();
-        book(kick, reference, &state.momentum, ledger, all);
+        Push {
+            kick,
+            reference,
+            prescribed,
+            middle: *time + 0.5 * travel,
+            obstacles,
+            travel: &obstacles.travel(*time, travel, Stage::Whole),
+        }
+        .apply(all, state, ledger, |a, p| {
+            let impulse = Impulse {
+                numerical: or_zero(&work.dissipation, a) * duration,
+                external: or_zero(&work.external_force, a) * duration,
+                ..Impulse::default()
+            };
+            *p += impulse.numerical + impulse.external - work.internal_force[a] * duration;
+            impulse
+        });
+        ledger.add_up_conditions(reference, |_| true);
     }
 }
 
-/// Books the work of a kick of a run of particles.
-pub(crate) fn book(
-    kick: Kick,
-    reference: &Reference,
-    momentum: &[Vec3],
-    ledger: &mut Ledger,
-    run: Range<usize>,
-) {
-    let first = run.start;
-    let Ledger {
-        momentum_before,
-        impulse,
-        work,
-        last_work,
-        friction_heat,
-        ..
-    } = ledger;
-    let (work, last_work) = (&mut work[run.clone()], &mut last_work[run.clone()]);
-    parallel::for_each_triple(
-        work,
-        last_work,
-        &mut friction_heat[run],
-        |k, total, last, heat| {
-            let a = first + k;
-            let mean = (momentum_before[a] + momentum[a]) * (0.5 / reference.density[a]);
-            let done = work_of(&impulse[a], &mean);
-            *heat = done.friction;
-            match kick {
-                // Half of twice the work is booked with the next kick: all of it by then.
-                Kick::Opening => *last = done.plus(done, 1.0),
-                Kick::Full => {
-                    *total = total.plus(*last, 0.5).plus(done, 0.5);
-                    *last = done;
-                }
-                Kick::Closing => {
-                    *total = total.plus(*last, 0.5).plus(done, 1.0);
-                    *last = Work::default();
-                }
+/// A kick of particles: forces, prescribed velocities, contact and the books in one loop.
+pub(crate) struct Push<'a> {
+    pub(crate) kick: Kick,
+    pub(crate) reference: &'a Reference,
+    pub(crate) prescribed: &'a Prescribed,
+    /// Time of the prescribed velocities, s.
+    pub(crate) middle: f64,
+    pub(crate) obstacles: &'a Obstacles,
+    /// The travel that follows.
+    pub(crate) travel: &'a Travel,
+}
+
+impl Push<'_> {
+    /// Applies it to a run of the particles of the simulation; `force(a, p)` changes the momentum of a
+    /// particle and tells what for.
+    pub(crate) fn apply(
+        &self,
+        run: Range<usize>,
+        state: &mut State,
+        ledger: &mut Ledger,
+        force: impl Fn(usize, &mut Vec3) -> Impulse + Sync,
+    ) {
+        let reference = self.reference;
+        let Ledger {
+            momentum_before,
+            pages,
+            ..
+        } = ledger;
+        for body in &reference.bodies {
+            let near = self.obstacles.near(self.travel, body);
+            let has_walls = self.obstacles.slots() > 0;
+            let particles = &body.particles;
+            let range = run.start.max(particles.start)..run.end.min(particles.end);
+            if range.is_empty() {
+                continue;
             }
-        },
-    );
+            let arrays = (
+                &mut state.position[..],
+                &mut state.momentum[..],
+                &mut momentum_before[..],
+            );
+            parallel::for_each_page(range, arrays, pages, |first, x, p, before, page| {
+                let begin = (first % CHUNK) as u32;
+                let mut next = page.held.partition_point(|held| held.place < begin);
+                for (k, ((x, p), before)) in x.iter_mut().zip(p).zip(before).enumerate() {
+                    let (a, place) = (first + k, (first + k) % CHUNK);
+                    *before = *p;
+                    let mut impulse = force(a, p);
+                    while let Some(held) = page.held.get_mut(next)
+                        && held.place as usize == place
+                    {
+                        let at = (body.density, &reference.position[a]);
+                        let condition = held.condition as usize;
+                        held.change = self.prescribed.hold(condition, at, self.middle, p);
+                        impulse.external += held.change;
+                        next += 1;
+                    }
+                    if has_walls {
+                        let particle = (x, &mut *p, &mut impulse);
+                        near.meet(page, place, reference.volume[a], particle);
+                    }
+                    if page.has_accounts() {
+                        let velocity = (*before + *p) * (0.5 / reference.density[a]);
+                        page.book(self.kick, place, &impulse, &velocity);
+                    }
+                }
+            });
+        }
+    }
 }

@@ -63,6 +63,7 @@
 //! ```
 
 mod acoustic;
+mod books;
 mod boundary;
 mod consistency;
 mod constraint;
@@ -95,7 +96,7 @@ mod viscosity;
 
 pub use energy::{Energies, Momenta, PaperEnergies};
 pub use error::{Place, SolverError};
-pub use fields::ParticleFields;
+pub use fields::{Particle, ParticleFields};
 pub use model::{
     Biharmonic, Condition, ConditionKind, Formulation, Heat, Integrator, Jst, Laplacian, Model,
     ModelBody, ModelObstacle, ObstacleHeat, Quadrature, Scheme, Signal, SignalFunction,

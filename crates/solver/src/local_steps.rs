@@ -3,14 +3,15 @@
 
 use jstsph_tensor::{Mat3, Vec3};
 
+use crate::books::{Impulse, Ledger};
 use crate::constraint::Stage;
-use crate::leapfrog::{Kick, book};
+use crate::leapfrog::{Kick, Push};
 use crate::model::Scheme;
 use crate::profile::Phase;
 use crate::reference::Reference;
 use crate::simulation::Simulation;
-use crate::state::{Impulse, or_zero};
-use crate::{SolverError, force, parallel};
+use crate::state::{State, or_zero};
+use crate::{SolverError, force};
 
 use choice::{Choice, stretch_limits};
 
@@ -189,51 +190,55 @@ impl LocalSteps {
             time,
             ..
         } = simulation;
-        let time = *time;
-        parallel::for_each_triple(
-            &mut state.momentum,
-            &mut ledger.momentum_before,
-            &mut ledger.impulse,
-            |a, p, before, impulse| {
-                *before = *p;
-                *impulse = Impulse {
+        let difference = duration.coarse - duration.fine;
+        for (moving, travel) in [(false, travel), (true, sub_step)] {
+            let push = Push {
+                kick,
+                reference,
+                prescribed,
+                middle: *time + 0.5 * travel,
+                obstacles,
+                travel: &obstacles.travel(*time, travel, Stage::Whole),
+            };
+            let force = |a: usize, p: &mut Vec3| {
+                let impulse = Impulse {
                     external: or_zero(&work.external_force, a) * duration.coarse,
                     ..Impulse::default()
                 };
                 *p += impulse.external - work.internal_force[a] * duration.coarse;
-            },
-        );
-        let difference = duration.coarse - duration.fine;
-        for (body, groups) in reference.bodies.iter().zip(&self.groups) {
-            let force = &self.fine_force[body.particles.clone()];
-            let momentum = &mut state.momentum[body.particles.clone()];
-            groups
-                .moving
-                .for_each_run(true, momentum, |first, momentum| {
-                    for (p, force) in momentum.iter_mut().zip(&force[first..]) {
-                        *p += force * difference;
-                    }
-                });
-        }
-        for (moving, travel) in [(false, travel), (true, sub_step)] {
-            let middle = time + 0.5 * travel;
-            prescribed.apply_where(
-                reference,
-                (middle, 1.0),
-                &mut state.momentum,
-                ledger,
-                |body, a| self.groups[body].moving.contains(a) == moving,
-            );
-            let travel = obstacles.travel(time, travel, Stage::Whole);
-            for (body, groups) in reference.bodies.iter().zip(&self.groups) {
-                for run in groups.moving.runs(0..body.particles.len(), moving) {
-                    obstacles.meet(&travel, (body, run), reference, state, ledger);
+                if moving {
+                    *p += self.fine_force[a] * difference;
                 }
+                impulse
+            };
+            self.push(moving, push, state, ledger, force);
+        }
+        simulation.finished(Phase::Constraint);
+    }
+}
+
+impl LocalSteps {
+    /// Applies a push to the particles that move in sub-steps, or to the others.
+    fn push(
+        &self,
+        moving: bool,
+        push: Push<'_>,
+        state: &mut State,
+        ledger: &mut Ledger,
+        force: impl Fn(usize, &mut Vec3) -> Impulse + Sync,
+    ) {
+        let reference = push.reference;
+        for (body, groups) in reference.bodies.iter().zip(&self.groups) {
+            let first = body.particles.start;
+            for run in groups.moving.runs(0..body.particles.len(), moving) {
+                let run = first + run.start..first + run.end;
+                push.apply(run, state, ledger, &force);
             }
         }
-        let all = 0..reference.position.len();
-        book(kick, reference, &state.momentum, ledger, all);
-        simulation.finished(Phase::Constraint);
+        ledger.add_up_conditions(reference, |a| {
+            let (body, a) = reference.owner_of_particle(a);
+            self.groups[body].moving.contains(a) == moving
+        });
     }
 }
 

@@ -5,10 +5,12 @@
 //! deterministic by construction; sums and maxima run over a binary tree that depends on the
 //! number of items alone. Small problems (the paper's own have hundreds of particles) stay serial.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 /// Items per task.
-const CHUNK: usize = 256;
+pub(crate) const CHUNK: usize = 256;
 
 /// Most chunks of a task in loops whose items may take different times, as points that flow and points
 /// that do not: left to itself, rayon cuts a loop into twice as many tasks as there are threads.
@@ -172,37 +174,45 @@ pub(crate) fn for_each_piece<T: Send>(
         .for_each(|(piece, part)| action(piece, part));
 }
 
-/// Calls `action(i, &mut first[i], &mut second[i], &mut third[i], group)` for every i, where
-/// `group` is the i-th run of `width` entries of `grouped`.
-pub(crate) fn for_each_with_group<A: Send, B: Send, C: Send, G: Send>(
-    (first, second, third): (&mut [A], &mut [B], &mut [C]),
-    grouped: &mut [G],
-    width: usize,
-    action: impl Fn(usize, &mut A, &mut B, &mut C, &mut [G]) + Sync,
+/// Calls `action(first, a, b, c, page)` on runs of `range` each of which lies in one page of [`CHUNK`]
+/// items, where `first` is the index of the first of them. The arrays have all items.
+pub(crate) fn for_each_page<A: Send, B: Send, C: Send, P: Send>(
+    range: Range<usize>,
+    (a, b, c): (&mut [A], &mut [B], &mut [C]),
+    pages: &mut [P],
+    action: impl Fn(usize, &mut [A], &mut [B], &mut [C], &mut P) + Sync,
 ) {
-    debug_assert_eq!(first.len() * width, grouped.len());
-    let run = |offset: usize, a: &mut [A], b: &mut [B], c: &mut [C], g: &mut [G]| {
-        for (k, (((a, b), c), g)) in a
-            .iter_mut()
-            .zip(b)
-            .zip(c)
-            .zip(g.chunks_mut(width))
-            .enumerate()
-        {
-            action(offset + k, a, b, c, g);
-        }
-    };
-    if serial(first.len()) {
-        run(0, first, second, third, grouped);
+    // Up to where a page begins, then from page to page.
+    let aligned = range.start.next_multiple_of(CHUNK).min(range.end);
+    let head = range.start..aligned;
+    if !head.is_empty() {
+        let page = &mut pages[head.start / CHUNK];
+        let (a, b, c) = (&mut a[head.clone()], &mut b[head.clone()], &mut c[head]);
+        action(range.start, a, b, c, page);
+    }
+    if aligned == range.end {
         return;
     }
-    first
-        .par_chunks_mut(CHUNK)
-        .zip(second.par_chunks_mut(CHUNK))
-        .zip(third.par_chunks_mut(CHUNK))
-        .zip(grouped.par_chunks_mut(CHUNK * width))
+    let rest = aligned..range.end;
+    let pages = &mut pages[aligned / CHUNK..];
+    let (a, b, c) = (
+        &mut a[rest.clone()],
+        &mut b[rest.clone()],
+        &mut c[rest.clone()],
+    );
+    if serial(rest.len()) {
+        let runs = a.chunks_mut(CHUNK).zip(b.chunks_mut(CHUNK));
+        for (k, (((a, b), c), page)) in runs.zip(c.chunks_mut(CHUNK)).zip(pages).enumerate() {
+            action(aligned + k * CHUNK, a, b, c, page);
+        }
+        return;
+    }
+    a.par_chunks_mut(CHUNK)
+        .zip(b.par_chunks_mut(CHUNK))
+        .zip(c.par_chunks_mut(CHUNK))
+        .zip(pages)
         .enumerate()
-        .for_each(|(chunk, (((a, b), c), g))| run(chunk * CHUNK, a, b, c, g));
+        .for_each(|(k, (((a, b), c), page))| action(aligned + k * CHUNK, a, b, c, page));
 }
 
 /// Folds `leaf(range)` over 0..items with `join`, in a fixed binary tree.
@@ -274,22 +284,29 @@ mod tests {
     #[test]
     fn every_slot_is_visited_once_with_its_own_index() {
         for threads in [1, 3] {
-            let (mut a, mut b) = (vec![0usize; 5001], vec![0usize; 5001 * 3]);
-            let (mut c, mut d) = (a.clone(), a.clone());
+            let mut a = vec![0usize; 5001];
+            let (mut b, mut c) = (a.clone(), a.clone());
+            let mut pages = vec![0usize; 5001_usize.div_ceil(CHUNK)];
+            // Pages are whole, cut at either end, or cut at both.
+            let ranges = [0..300, 300..300, 300..310, 310..512, 512..4900, 4900..5001];
             in_pool(threads, || {
-                for_each_with_group((&mut a, &mut c, &mut d), &mut b, 3, |i, a, c, d, group| {
-                    *a += i;
-                    *c += 1;
-                    *d += 2 * i;
-                    for (k, slot) in group.iter_mut().enumerate() {
-                        *slot += 3 * i + k;
-                    }
-                });
+                for range in ranges {
+                    let arrays = (&mut a[..], &mut b[..], &mut c[..]);
+                    for_each_page(range, arrays, &mut pages, |first, a, b, c, page| {
+                        *page += a.len();
+                        for (k, ((a, b), c)) in a.iter_mut().zip(b).zip(c).enumerate() {
+                            *a += first + k;
+                            *b += 1;
+                            *c += first / CHUNK;
+                        }
+                    });
+                }
             });
             assert!(a.iter().enumerate().all(|(i, v)| *v == i));
-            assert!(b.iter().enumerate().all(|(i, v)| *v == i));
-            assert!(c.iter().all(|v| *v == 1));
-            assert!(d.iter().enumerate().all(|(i, v)| *v == 2 * i));
+            assert!(b.iter().all(|v| *v == 1));
+            assert!(c.iter().enumerate().all(|(i, v)| *v == i / CHUNK));
+            assert!(pages[..pages.len() - 1].iter().all(|v| *v == CHUNK));
+            assert_eq!(pages.iter().sum::<usize>(), 5001);
         }
     }
 }

@@ -2,8 +2,6 @@
 
 use jstsph_tensor::Vec3;
 
-use crate::ParticleFields;
-
 /// A scalar field of the particles, as written to output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Field {
@@ -132,9 +130,9 @@ impl crate::Simulation {
         }
     }
 
-    /// Reads a probe, one value per column; `fields` are those of the present state.
+    /// Reads a probe, one value per column.
     #[must_use]
-    pub fn probe(&self, probe: &Probe, fields: &ParticleFields) -> Vec<f64> {
+    pub fn probe(&self, probe: &Probe) -> Vec<f64> {
         let position = &self.state().position;
         match &probe.kind {
             ProbeKind::Extent { particles, axis } => {
@@ -158,7 +156,7 @@ impl crate::Simulation {
                 let (mut sum, mut total) = (0.0, 0.0);
                 for part in edge {
                     let a = part.particle as usize;
-                    let place = position[a] + fields.deformation_gradient[a] * part.arm;
+                    let place = position[a] + self.particle(a).deformation_gradient() * part.arm;
                     sum += part.weight * distance(&place, point, *axis);
                     total += part.weight;
                 }
@@ -169,11 +167,11 @@ impl crate::Simulation {
                 field,
                 statistic,
             } => {
-                let value = |a: u32| self.field_value(*field, a as usize, fields);
+                let value = |a: u32| self.field_value(*field, a as usize);
                 vec![self.statistic(particles, *statistic, &value)]
             }
             ProbeKind::Point { position, field } => {
-                vec![self.interpolated(position, *field, fields)]
+                vec![self.interpolated(position, *field)]
             }
             ProbeKind::Line {
                 from,
@@ -183,7 +181,7 @@ impl crate::Simulation {
             } => (0..*count)
                 .map(|i| {
                     let fraction = i as f64 / (*count - 1) as f64;
-                    self.interpolated(&(from + (to - from) * fraction), *field, fields)
+                    self.interpolated(&(from + (to - from) * fraction), *field)
                 })
                 .collect(),
         }
@@ -219,25 +217,24 @@ impl crate::Simulation {
         }
     }
 
-    fn field_value(&self, field: Field, a: usize, fields: &ParticleFields) -> f64 {
+    fn field_value(&self, field: Field, a: usize) -> f64 {
+        let particle = self.particle(a);
         match field {
-            Field::EquivalentPlasticStrain => fields.equivalent_plastic_strain[a],
-            Field::VonMisesStress => fields.von_mises_stress[a],
-            Field::Pressure => fields.pressure[a],
+            Field::EquivalentPlasticStrain => particle.equivalent_plastic_strain(),
+            Field::VonMisesStress => particle.von_mises_stress(),
+            Field::Pressure => particle.pressure(),
             Field::Jacobian => self.state().jacobian[a],
-            Field::WaveSpeed => fields.wave_speed[a],
-            Field::Temperature => fields.temperature[a],
-            Field::Displacement(axis) => {
-                self.state().position[a][axis] - self.reference().position[a][axis]
-            }
+            Field::WaveSpeed => particle.wave_speed(),
+            Field::Temperature => self.state().temperature[a],
+            Field::Displacement(axis) => particle.displacement()[axis],
             Field::Position(axis) => self.state().position[a][axis],
-            Field::Velocity(axis) => fields.velocity[a][axis],
+            Field::Velocity(axis) => particle.velocity()[axis],
         }
     }
 
     /// Shepard interpolation in the current configuration, over all bodies, with the largest
     /// support of any.
-    fn interpolated(&self, point: &Vec3, field: Field, fields: &ParticleFields) -> f64 {
+    fn interpolated(&self, point: &Vec3, field: Field) -> f64 {
         let reference = self.reference();
         let (mut sum, mut total) = (0.0, 0.0);
         for body in &reference.bodies {
@@ -250,7 +247,7 @@ impl crate::Simulation {
                 let r = (self.state().position[a] - point).norm();
                 if r < support.radius() {
                     let weight = reference.volume[a] * support.value(r);
-                    sum += weight * self.field_value(field, a, fields);
+                    sum += weight * self.field_value(field, a);
                     total += weight;
                 }
             }

@@ -27,11 +27,11 @@ pub struct Reference {
     /// Weights of the gradient at particles.
     pub weights: Weights,
     /// Reference positions X of all particles, m.
-    pub position: Vec<Vec3>,
+    pub position: Arc<Vec<Vec3>>,
     /// Tributary volumes V_a of all particles, m³ (per metre of thickness in plane strain).
     pub volume: Vec<f64>,
     /// Volumes V_q of all evaluation points, m³.
-    pub point_volume: Vec<f64>,
+    pub point_volume: Arc<Vec<f64>>,
     /// Density of every particle in the inertia, p = ρ v: that of the material times the mass
     /// scaling, kg/m³.
     pub density: Vec<f64>,
@@ -74,7 +74,7 @@ pub struct BodyReference {
     /// Jumps of the upwind dissipation, when it is used.
     pub jumps: Option<JumpOperator>,
     /// Particles whose J a point sees, body indices: the two ends of a bond, or twice the particle.
-    pub ends: Vec<[u32; 2]>,
+    pub ends: Arc<Vec<[u32; 2]>>,
     /// Points that make up a particle, with their shares (adding to one).
     pub shares: Shares,
     /// The body as it was given: lattice cells, bonds.
@@ -180,6 +180,15 @@ impl Shares {
     }
 }
 
+/// Appends to a list, which is shared as long as it is the same.
+fn append<T: Clone>(list: &mut Arc<Vec<T>>, more: &Arc<Vec<T>>) {
+    if list.is_empty() {
+        *list = Arc::clone(more);
+    } else {
+        Arc::make_mut(list).extend_from_slice(more);
+    }
+}
+
 impl Reference {
     /// Whether nothing happens out of the plane.
     pub(crate) fn is_plane(&self) -> bool {
@@ -195,9 +204,9 @@ impl Reference {
             dimension: model.dimension,
             quadrature: model.scheme.quadrature,
             weights: model.scheme.weights,
-            position: Vec::new(),
+            position: Arc::default(),
             volume: Vec::new(),
-            point_volume: Vec::new(),
+            point_volume: Arc::default(),
             density: Vec::new(),
             bodies: Vec::new(),
         };
@@ -222,18 +231,19 @@ impl Reference {
         let first_point = self.point_volume.len();
         let (gradient, ends, shares) = match scheme.quadrature {
             Quadrature::Particles => {
-                self.point_volume.extend_from_slice(&body.volumes);
+                Arc::make_mut(&mut self.point_volume).extend_from_slice(&body.volumes);
                 let ends = (0..particles as u32).map(|a| [a, a]).collect();
-                (at_particles()?, ends, Shares::identity(particles))
+                (at_particles()?, Arc::new(ends), Shares::identity(particles))
             }
             Quadrature::Bonds => {
                 let bonds = &body.bonds;
-                self.point_volume.extend_from_slice(&bonds.volumes);
-                let gradient =
-                    GradientOperator::at_points(&bonds.midpoints, &body.positions, &support)
-                        .map_err(failed)?;
+                append(&mut self.point_volume, &bonds.volumes);
+                let midpoints = bonds.midpoints(&body.positions);
+                let gradient = GradientOperator::at_points(&midpoints, &body.positions, &support)
+                    .map_err(failed)?;
+                drop(midpoints);
                 let shares = Shares::of_bonds(particles, &bonds.ends, &bonds.volumes);
-                (gradient, bonds.ends.clone(), shares)
+                (gradient, Arc::clone(&bonds.ends), shares)
             }
         };
         let (gradient, correction) = if scheme.boundary_correction {
@@ -243,12 +253,15 @@ impl Reference {
         } else {
             (gradient, None)
         };
-        let points = match scheme.quadrature {
-            Quadrature::Particles => &body.positions,
-            Quadrature::Bonds => &body.bonds.midpoints,
-        };
-        let lines = (points.len() <= POINTS_IN_LINES)
-            .then(|| LineOperator::new(&gradient, &body.positions, points, body.spacing))
+        let lines = (gradient.points() <= POINTS_IN_LINES)
+            .then(|| {
+                let midpoints = match scheme.quadrature {
+                    Quadrature::Particles => None,
+                    Quadrature::Bonds => Some(body.bonds.midpoints(&body.positions)),
+                };
+                let points = midpoints.as_deref().unwrap_or(&body.positions);
+                LineOperator::new(&gradient, &body.positions, points, body.spacing)
+            })
             .flatten();
         // Half of each bond to each end: masses follow from the same volumes as the stresses.
         let volume: Vec<f64> = match scheme.quadrature {
@@ -295,7 +308,7 @@ impl Reference {
         let material_density = input.material.density();
         let density = material_density * scheme.inertia_scale;
         let first = self.position.len();
-        self.position.extend_from_slice(&body.positions);
+        append(&mut self.position, &body.positions);
         self.volume.extend_from_slice(&volume);
         self.density.extend(std::iter::repeat_n(density, particles));
         self.bodies.push(BodyReference {
@@ -361,6 +374,17 @@ impl Reference {
         let body = &self.bodies[body];
         let [a, b] = body.ends[point].map(|end| body.body.positions[end as usize]);
         (a + b) * 0.5
+    }
+
+    /// The body that owns a particle, and the index within it.
+    #[must_use]
+    pub fn owner_of_particle(&self, particle: usize) -> (usize, usize) {
+        let body = self
+            .bodies
+            .iter()
+            .position(|body| body.particles.contains(&particle))
+            .unwrap_or_default();
+        (body, particle - self.bodies[body].particles.start)
     }
 
     /// The body that owns an evaluation point, and the index within it.

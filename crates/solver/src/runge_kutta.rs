@@ -5,13 +5,15 @@ use std::ops::{Add, Mul, Sub};
 
 use jstsph_tensor::Mat3;
 
+use crate::books::{Impulse, Ledger};
 use crate::constraint::Stage;
 use crate::model::Formulation;
+use crate::parallel::{self, CHUNK};
 use crate::profile::Phase;
-use crate::simulation::{Simulation, work_of};
-use crate::state::{Impulse, Ledger, State, or_zero};
+use crate::simulation::Simulation;
+use crate::state::{State, or_zero};
 use crate::strain::constrain;
-use crate::{SolverError, parallel, strain};
+use crate::{SolverError, strain};
 
 use table::Combination;
 pub(crate) use table::Method;
@@ -298,15 +300,25 @@ impl Simulation {
         let start = &registers.start;
         let Ledger {
             impulse,
-            work,
-            friction_heat,
+            momentum_before,
+            pages,
             ..
         } = ledger;
-        parallel::for_each_pair(work, friction_heat, |a, total, heat| {
-            let mean = (start.momentum[a] + state.momentum[a]) * (0.5 / reference.density[a]);
-            let done = work_of(&impulse[a], &mean);
-            *total = total.plus(done, 1.0);
-            *heat = done.friction;
+        let arrays = (
+            &mut impulse[..],
+            &mut state.momentum[..],
+            &mut momentum_before[..],
+        );
+        let all = 0..reference.position.len();
+        parallel::for_each_page(all, arrays, pages, |first, impulse, momentum, _, page| {
+            if !page.has_accounts() {
+                return;
+            }
+            for (k, (impulse, p)) in impulse.iter().zip(momentum).enumerate() {
+                let a = first + k;
+                let mean = (start.momentum[a] + *p) * (0.5 / reference.density[a]);
+                page.book_step(a % CHUNK, impulse, &mean);
+            }
         });
     }
 }

@@ -2,12 +2,13 @@
 
 use std::ops::Range;
 
+use jstsph_contact::Exchange;
 use jstsph_material::{Block, BlockReader, BlockVisitor, History, Material, MaterialBlock};
 use jstsph_tensor::{Mat3, Vec3};
 
 use crate::SolverError;
+use crate::books::{ContactSlot, Work};
 use crate::simulation::Simulation;
-use crate::state::Work;
 
 /// Everything that moves in a simulation; with the model it restores the simulation bit by bit.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,6 +55,19 @@ impl<'a> SavedArray<'a> {
         }
     }
 
+    fn by<const N: usize>(
+        name: &str,
+        items: usize,
+        numbers: impl Fn(usize) -> [f64; N] + 'a,
+    ) -> Self {
+        Self {
+            name: name.to_owned(),
+            items,
+            width: N,
+            numbers: Box::new(move |range, out| out.extend(range.flat_map(&numbers))),
+        }
+    }
+
     fn scalars(name: &str, items: &'a [f64]) -> Self {
         Self::of(name, items, |value| [*value])
     }
@@ -91,8 +105,9 @@ impl<'a> SavedArray<'a> {
         })
     }
 
-    fn work(name: &str, items: &'a [Work]) -> Self {
-        Self::of(name, items, |w| {
+    fn work(name: &str, items: usize, work: impl Fn(usize) -> Work + 'a) -> Self {
+        Self::by(name, items, move |a| {
+            let w = work(a);
             [w.numerical, w.external, w.contact, w.friction]
         })
     }
@@ -220,17 +235,19 @@ impl<'a> Arrays<'a> {
         Ok(())
     }
 
-    fn work(&self, name: &str, out: &mut [Work]) -> Result<(), SolverError> {
-        let flat = self.get(name, 4 * out.len())?;
-        for (w, c) in out.iter_mut().zip(flat.chunks_exact(4)) {
-            *w = Work {
-                numerical: c[0],
-                external: c[1],
-                contact: c[2],
-                friction: c[3],
-            };
-        }
-        Ok(())
+    /// Work on each of some particles.
+    fn work(
+        &self,
+        name: &str,
+        particles: usize,
+    ) -> Result<impl Fn(usize) -> Work + use<'a>, SolverError> {
+        let flat = self.get(name, 4 * particles)?;
+        Ok(move |a: usize| Work {
+            numerical: flat[4 * a],
+            external: flat[4 * a + 1],
+            contact: flat[4 * a + 2],
+            friction: flat[4 * a + 3],
+        })
     }
 }
 
@@ -257,6 +274,14 @@ impl Simulation {
     pub fn saved_arrays(&self) -> Vec<SavedArray<'_>> {
         let (state, ledger, work) = (&self.state, &self.ledger, &self.work);
         let particles = state.position.len();
+        let parts = self.obstacles.slots();
+        let slots = particles * parts;
+        let slot = move |k: usize| {
+            ledger
+                .slot(k / parts, k % parts)
+                .copied()
+                .unwrap_or_default()
+        };
         let scalars = [self.initial_energy, self.first_dt, self.smallest_stretch];
         let mut arrays = vec![
             SavedArray::vectors("position", &state.position),
@@ -274,23 +299,21 @@ impl Simulation {
             SavedArray::vectors_or_zero("dissipation", &work.dissipation, particles),
             SavedArray::scalars("jacobian_dissipation", &work.jacobian_dissipation),
             SavedArray::vectors("momentum_before", &ledger.momentum_before),
-            SavedArray::work("work", &ledger.work),
-            SavedArray::work("last_work", &ledger.last_work),
+            SavedArray::work("work", particles, |a| ledger.work(a)),
+            SavedArray::work("last_work", particles, |a| ledger.last_work(a)),
             SavedArray::scalars("plastic_dissipation", &ledger.plastic_dissipation),
             SavedArray::vectors("condition_impulse", &ledger.condition_impulse),
             SavedArray::vectors("obstacle_displacement", &self.obstacles.displacement),
-            SavedArray::of("contact_impulse", &ledger.contact, |slot| {
-                slot.impulse.into()
-            }),
-            SavedArray::of("contact_given", &ledger.contact, |slot| {
-                let (normal, friction) = (slot.given.normal, slot.given.friction);
+            SavedArray::by("contact_impulse", slots, move |k| slot(k).impulse.into()),
+            SavedArray::by("contact_given", slots, move |k| {
+                let Exchange { normal, friction } = slot(k).given;
                 [
                     normal.x, normal.y, normal.z, friction.x, friction.y, friction.z,
                 ]
             }),
-            SavedArray::scalars("friction_heat", &ledger.friction_heat),
-            SavedArray::of("contact_corrections", &ledger.contact, |slot| {
-                [f64::from(slot.corrections)]
+            SavedArray::by("friction_heat", particles, |a| [ledger.friction_heat(a)]),
+            SavedArray::by("contact_corrections", slots, move |k| {
+                [f64::from(slot(k).corrections)]
             }),
             SavedArray::of("scalars", &[()], move |()| scalars),
         ];
@@ -336,24 +359,36 @@ impl Simulation {
         }
         arrays.scalars("jacobian_dissipation", &mut work.jacobian_dissipation)?;
         arrays.vectors("momentum_before", &mut ledger.momentum_before)?;
-        arrays.work("work", &mut ledger.work)?;
-        arrays.work("last_work", &mut ledger.last_work)?;
         arrays.scalars("plastic_dissipation", &mut ledger.plastic_dissipation)?;
         arrays.vectors("condition_impulse", &mut ledger.condition_impulse)?;
         arrays.vectors("obstacle_displacement", &mut self.obstacles.displacement)?;
-        let mut impulses = vec![Vec3::zeros(); ledger.contact.len()];
-        arrays.vectors("contact_impulse", &mut impulses)?;
-        let mut given = vec![Vec3::zeros(); 2 * ledger.contact.len()];
-        arrays.vectors("contact_given", &mut given)?;
-        for (slot, given) in ledger.contact.iter_mut().zip(given.chunks_exact(2)) {
-            [slot.given.normal, slot.given.friction] = [given[0], given[1]];
+        let particles = state.position.len();
+        let (total, last) = (
+            arrays.work("work", particles)?,
+            arrays.work("last_work", particles)?,
+        );
+        let heat = arrays.get("friction_heat", particles)?;
+        for (a, heat) in heat.iter().enumerate() {
+            ledger.restore_work(a, [total(a), last(a)], *heat);
         }
-        arrays.scalars("friction_heat", &mut ledger.friction_heat)?;
-        let corrections = arrays.get("contact_corrections", ledger.contact.len())?;
-        for ((slot, impulse), count) in ledger.contact.iter_mut().zip(impulses).zip(corrections) {
-            slot.impulse = impulse;
-            slot.corrections = *count as u32;
-            slot.cache = Default::default();
+        let parts = self.obstacles.slots();
+        let slots = particles * parts;
+        let (impulses, given) = (
+            arrays.get("contact_impulse", 3 * slots)?,
+            arrays.get("contact_given", 6 * slots)?,
+        );
+        let corrections = arrays.get("contact_corrections", slots)?;
+        let vector = |flat: &[f64], k: usize| Vec3::from_column_slice(&flat[3 * k..3 * k + 3]);
+        for (k, count) in corrections.iter().enumerate() {
+            let slot = ContactSlot {
+                impulse: vector(impulses, k),
+                given: Exchange {
+                    normal: vector(given, 2 * k),
+                    friction: vector(given, 2 * k + 1),
+                },
+                corrections: *count as u32,
+            };
+            ledger.restore_slot((k / parts, k % parts), slot);
         }
         if let Some(limit) = &mut self.acoustic {
             limit.restore(arrays.get("acoustic_limit", 3)?);

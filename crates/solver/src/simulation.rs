@@ -3,6 +3,7 @@
 use jstsph_material::MaterialBlock;
 use jstsph_tensor::{Mat3, Vec3};
 
+use crate::books::Ledger;
 use crate::constraint::{Obstacles, Prescribed, Stage};
 use crate::error::Place;
 use crate::eulerian::CurrentKernels;
@@ -13,7 +14,7 @@ use crate::model::{Formulation, Model, Scheme};
 use crate::profile::{Observer, Phase};
 use crate::reference::Reference;
 use crate::runge_kutta::{Method, Registers};
-use crate::state::{Impulse, Ledger, State, Work, Workspace};
+use crate::state::{State, Workspace};
 use crate::strain::Strains;
 use crate::time_step::{AcousticLimit, StableStep};
 use crate::{
@@ -92,16 +93,10 @@ impl Simulation {
         let (prescribed, obstacles) = (Prescribed::new(&model), Obstacles::new(&model));
         let particles = reference.position.len();
         let points = reference.point_volume.len();
-        let ledger = Ledger {
-            momentum_before: state.momentum.clone(),
-            impulse: vec![Impulse::default(); particles],
-            work: vec![Work::default(); particles],
-            last_work: vec![Work::default(); particles],
-            friction_heat: vec![0.0; particles],
-            plastic_dissipation: vec![0.0; points],
-            contact: obstacles.new_slots(particles),
-            condition_impulse: vec![Vec3::zeros(); prescribed.len()],
-        };
+        let method = Method::of(model.scheme.integrator);
+        let (momentum, has_impulses) = (&state.momentum, method.is_some());
+        let constraints = (&prescribed, &obstacles);
+        let mut ledger = Ledger::new(&reference, momentum, constraints, has_impulses);
         let loads = Loads::new(&model);
         let mut work = Workspace::new(&reference);
         if !loads.is_empty() {
@@ -114,8 +109,9 @@ impl Simulation {
         if model.scheme.formulation == Formulation::Displacement {
             work.displacement = vec![Vec3::zeros(); particles];
         }
-        let registers = Method::of(model.scheme.integrator)
-            .map(|method| Box::new(Registers::new(&method, &state)));
+        let jst = model.scheme.stabilisation.jst;
+        ledger.open_accounts(&work, jst.is_some_and(|jst| jst.on_jacobian));
+        let registers = method.map(|method| Box::new(Registers::new(&method, &state)));
         let plastic = if model.scheme.stabilisation.jst.is_some() {
             points
         } else {
@@ -348,7 +344,7 @@ impl Simulation {
             reference: &self.reference,
             materials: &self.materials,
             quadrature: self.scheme.quadrature,
-            friction_heat: &self.ledger.friction_heat,
+            ledger: &self.ledger,
             displacement: &self.obstacles.displacement,
             time: self.time,
             dt,
@@ -409,10 +405,26 @@ impl Simulation {
             ledger,
             ..
         } = self;
-        parallel::for_each(&mut ledger.work, |a, total| {
-            total.numerical +=
-                dt * work.volumetric_stress[a] / state.jacobian[a] * work.jacobian_dissipation[a];
-        });
+        let all = 0..state.jacobian.len();
+        let arrays = (
+            &mut state.jacobian[..],
+            &mut work.volumetric_stress[..],
+            &mut work.jacobian_dissipation[..],
+        );
+        parallel::for_each_page(
+            all,
+            arrays,
+            &mut ledger.pages,
+            |_, j, stress, rate, page| {
+                for (account, ((j, stress), rate)) in page
+                    .numerical
+                    .iter_mut()
+                    .zip(j.iter().zip(stress).zip(rate))
+                {
+                    account.total += dt * *stress / *j * *rate;
+                }
+            },
+        );
     }
 
     // Errors, with everything a user needs to find the place.
@@ -487,15 +499,5 @@ impl Simulation {
         let body = &self.reference.bodies[body];
         let [a, b] = body.ends[point].map(|end| body.particles.start + end as usize);
         ((self.state.position[a] + self.state.position[b]) * 0.5).into()
-    }
-}
-
-/// Work of an impulse at a velocity.
-pub(crate) fn work_of(impulse: &Impulse, velocity: &Vec3) -> Work {
-    Work {
-        numerical: impulse.numerical.dot(velocity),
-        external: impulse.external.dot(velocity),
-        contact: impulse.contact.dot(velocity) + impulse.friction_at_walls,
-        friction: impulse.friction_at_walls - impulse.friction.dot(velocity),
     }
 }

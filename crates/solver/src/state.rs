@@ -1,6 +1,5 @@
 //! The unknowns, the buffers of a step, and the books kept beside them.
 
-use jstsph_contact::{CachedGap, Exchange};
 use jstsph_material::ROOM_TEMPERATURE;
 use std::ops::Range;
 
@@ -36,7 +35,7 @@ impl State {
         let points = reference.point_volume.len();
         let cofactors = if keeps_cofactor(scheme) { points } else { 0 };
         Self {
-            position: reference.position.clone(),
+            position: reference.position.to_vec(),
             momentum,
             temperature: vec![ROOM_TEMPERATURE; reference.position.len()],
             jacobian: vec![1.0; reference.position.len()],
@@ -231,76 +230,4 @@ impl StretchBounds {
 #[inline]
 pub(crate) fn or_zero(field: &[Vec3], a: usize) -> Vec3 {
     field.get(a).copied().unwrap_or_else(Vec3::zeros)
-}
-
-/// Momentum changes of one particle within a step, per unit reference volume, by cause.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Impulse {
-    pub(crate) numerical: Vec3,
-    pub(crate) external: Vec3,
-    /// Of the contact law.
-    pub(crate) contact: Vec3,
-    /// Of friction.
-    pub(crate) friction: Vec3,
-    /// Work of the friction impulses at the velocities of their walls, J/m³.
-    pub(crate) friction_at_walls: f64,
-}
-
-/// Work done on one particle per unit reference volume, J/m³, by cause.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Work {
-    pub(crate) numerical: f64,
-    pub(crate) external: f64,
-    /// Of the contact law, and of friction at the velocity of the wall.
-    pub(crate) contact: f64,
-    /// Dissipated by friction: positive when energy is lost.
-    pub(crate) friction: f64,
-}
-
-impl Work {
-    pub(crate) fn plus(self, other: Self, factor: f64) -> Self {
-        Self {
-            numerical: self.numerical + factor * other.numerical,
-            external: self.external + factor * other.external,
-            contact: self.contact + factor * other.contact,
-            friction: self.friction + factor * other.friction,
-        }
-    }
-}
-
-/// What one particle has to do with one part of one obstacle.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct ContactSlot {
-    /// Distance computed last, to skip particles that cannot have reached the wall since.
-    pub(crate) cache: CachedGap,
-    /// Impulse on the particle so far, N s.
-    pub(crate) impulse: Vec3,
-    /// Impulses on the particle in the last kick (leapfrog) or step (TVD-RK2), per unit reference
-    /// volume.
-    pub(crate) given: Exchange,
-    /// How often the particle was put back onto the surface.
-    pub(crate) corrections: u32,
-}
-
-/// Books of a simulation: what was done by whom. They never act back on the unknowns.
-#[derive(Clone, Debug)]
-pub(crate) struct Ledger {
-    /// Momentum before the last kick (leapfrog), for quantities at the time of the positions.
-    pub(crate) momentum_before: Vec<Vec3>,
-    /// Impulses of the step under way.
-    pub(crate) impulse: Vec<Impulse>,
-    /// Work done up to the time of the positions.
-    pub(crate) work: Vec<Work>,
-    /// Work of the last kick (leapfrog), half of which is in `work`.
-    pub(crate) last_work: Vec<Work>,
-    /// Energy that friction has taken from each particle in the last kick (leapfrog) or step
-    /// (TVD-RK2), J per m³ of reference volume: what a heat source would be made of. The sum over
-    /// all kicks is the friction energy of the balance.
-    pub(crate) friction_heat: Vec<f64>,
-    /// Plastic dissipation of the points so far, J/m³.
-    pub(crate) plastic_dissipation: Vec<f64>,
-    /// Contact slots, particle by particle, one per obstacle part.
-    pub(crate) contact: Vec<ContactSlot>,
-    /// Impulse of each condition on its particles so far, N s.
-    pub(crate) condition_impulse: Vec<Vec3>,
 }

@@ -48,8 +48,12 @@ fn at_particles(body: &Body) -> GradientOperator {
 
 fn at_bonds(body: &Body) -> GradientOperator {
     let bonds = &body.bonds;
-    GradientOperator::at_points(&bonds.midpoints, &body.positions, &support(body, 0.8))
-        .expect("lattices have neighbours")
+    GradientOperator::at_points(
+        &bonds.midpoints(&body.positions),
+        &body.positions,
+        &support(body, 0.8),
+    )
+    .expect("lattices have neighbours")
 }
 
 fn passes(c: &mut Criterion) {

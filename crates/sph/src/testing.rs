@@ -57,7 +57,7 @@ pub(crate) fn unit_box(nodes: usize, dimension: usize) -> Body {
 pub(crate) fn jittered_box(nodes: usize, dimension: usize) -> Body {
     let mut body = unit_box(nodes, dimension);
     let mut random = Random(7);
-    for position in &mut body.positions {
+    for position in std::sync::Arc::make_mut(&mut body.positions) {
         *position += random.vector_in(dimension) * (0.2 * body.spacing);
     }
     body
@@ -67,7 +67,10 @@ pub(crate) fn jittered_box(nodes: usize, dimension: usize) -> Body {
 pub(crate) fn inside_jittered_box(nodes: usize, dimension: usize) -> Body {
     let mut body = unit_box(nodes, dimension);
     let mut random = Random(5);
-    for (position, boundary) in body.positions.iter_mut().zip(&body.boundary) {
+    for (position, boundary) in std::sync::Arc::make_mut(&mut body.positions)
+        .iter_mut()
+        .zip(&body.boundary)
+    {
         let shift = random.vector_in(dimension) * (0.2 * body.spacing);
         if !boundary {
             *position += shift;

@@ -1,4 +1,5 @@
 use super::*;
+use crate::Values;
 use jstsph_tensor::{Mat3, Vec3};
 use std::io::Read;
 
@@ -153,15 +154,61 @@ fn arrays_lie_in_the_order_opposite_to_their_elements() {
 
 #[test]
 fn an_array_of_exactly_one_block_has_no_partial_block() {
-    let mut encoder = Encoder::new(FrameOptions::default());
-    encoder
-        .append_compressed(BLOCK, std::iter::once(vec![7; BLOCK]))
-        .unwrap();
-    let header: Vec<u64> = encoder.appended[..24]
-        .chunks_exact(8)
-        .map(|w| u64::from_le_bytes(w.try_into().unwrap()))
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("frame.vtu");
+    let particles = BLOCK / 8;
+    let frame =
+        Frame::new(0.0, 0, vec![Vec3::zeros(); particles]).scalar("a", vec![7.0; particles]);
+    write_vtu(&path, &frame, FrameOptions::default()).unwrap();
+    let reader = Reader::open(&path);
+    // The last of the arrays is the first field.
+    let element = reader.element("a").split("offset=\"").nth(1).unwrap();
+    let at: usize = element.split('"').next().unwrap().parse().unwrap();
+    let header = [at, at + 8, at + 16].map(|at| reader.number(at));
+    assert_eq!(header, [1, BLOCK, 0]);
+    assert_eq!(reader.doubles("a"), bits(&vec![7.0; particles]));
+}
+
+#[test]
+fn pieces_written_by_several_threads_give_the_bytes_of_a_slice() {
+    let folder = tempfile::tempdir().unwrap();
+    let n = 5 * BLOCK / 72 + 77;
+    let tensors: Vec<Mat3> = (0..n)
+        .map(|i| Mat3::from_fn(|r, c| awkward(i + 3 * r + c)))
         .collect();
-    assert_eq!(header, [1, BLOCK as u64, 0]);
+    let bytes = |name: &str, threads: usize, values: Values<'_, Mat3>| {
+        let path = folder.path().join(name);
+        let frame = Frame::new(0.0, 0, vec![Vec3::zeros(); n]).tensor("stress", values);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let pool = pool.build().unwrap();
+        pool.install(|| write_vtu(&path, &frame, FrameOptions::default()))
+            .unwrap();
+        std::fs::read(path).unwrap()
+    };
+    let path = folder.path().join("outside");
+    let frame = Frame::new(0.0, 0, vec![Vec3::zeros(); n]).tensor("stress", &tensors);
+    write_vtu(&path, &frame, FrameOptions::default()).unwrap();
+    let expected = std::fs::read(path).unwrap();
+    for threads in [1, 3] {
+        let pieces = Values::pieces(n, |range, out: &mut Vec<Mat3>| {
+            out.extend_from_slice(&tensors[range]);
+        });
+        assert!(bytes("frame", threads, pieces) == expected, "{threads}");
+    }
+    // Of several bad values the first is reported, and no file is left.
+    let bad = Values::pieces(n, |range, out: &mut Vec<Mat3>| {
+        out.extend(range.map(|i| Mat3::identity() * if i < 9000 { 1.0 } else { f64::NAN }));
+    });
+    let frame = Frame::new(0.0, 0, vec![Vec3::zeros(); n]).tensor("stress", bad);
+    let path = folder.path().join("bad");
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(3);
+    let error = pool
+        .build()
+        .unwrap()
+        .install(|| write_vtu(&path, &frame, FrameOptions::default()))
+        .unwrap_err();
+    assert!(matches!(error, OutputError::NotFinite { index: 9000, .. }));
+    assert!(!path.exists());
 }
 
 #[test]

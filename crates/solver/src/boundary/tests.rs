@@ -109,7 +109,7 @@ fn area_vectors_have_the_moments_of_the_surface() {
         assert!(total.norm() < 1e-12 * volume, "{name}: {total}");
         let moment: Mat3 = vectors
             .iter()
-            .zip(&body.positions)
+            .zip(body.positions.iter())
             .map(|(v, x)| x * v.transpose())
             .sum();
         let out_of_plane = if body.dimension == Dimension::Solid {
@@ -136,8 +136,12 @@ fn round_bodies_sum_by_parts() {
             body.volumes.clone(),
         )];
         let bonds = &body.bonds;
-        let operator = GradientOperator::at_points(&bonds.midpoints, &body.positions, &support);
-        candidates.push((operator.unwrap(), bonds.volumes.clone()));
+        let operator = GradientOperator::at_points(
+            &bonds.midpoints(&body.positions),
+            &body.positions,
+            &support,
+        );
+        candidates.push((operator.unwrap(), bonds.volumes.to_vec()));
         for (operator, volumes) in candidates {
             let (operator, correction) = corrected(operator, &body, &volumes, &vectors);
             let is_box = matches!(body.shape, Shape::Box { .. });
@@ -159,8 +163,12 @@ fn carved_bodies_sum_by_parts() {
         let support = support(&body, 0.8);
         let vectors = area_vectors(&body, &body.weights, &support);
         let bonds = &body.bonds;
-        let operator =
-            GradientOperator::at_points(&bonds.midpoints, &body.positions, &support).unwrap();
+        let operator = GradientOperator::at_points(
+            &bonds.midpoints(&body.positions),
+            &body.positions,
+            &support,
+        )
+        .unwrap();
         let inner = |a: usize| !body.boundary[a];
         assert!((0..vectors.len()).any(inner), "{name}");
         let before = largest_defect(&operator, &bonds.volumes, &vectors, inner) / face;

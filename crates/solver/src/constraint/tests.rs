@@ -17,7 +17,7 @@ fn simulation(conditions: Vec<Condition>) -> Simulation {
     let mut model = model(
         [5, 4, 1],
         elastic(),
-        scheme(Quadrature::Particles, Integrator::Leapfrog),
+        scheme(Quadrature::Particles, Integrator::TvdRungeKutta),
     );
     model.bodies[0]
         .initial_velocity
@@ -154,4 +154,47 @@ fn total_momentum_changes_by_the_impulses_of_the_conditions_alone() {
             );
         }
     }
+}
+
+#[test]
+fn the_books_of_an_obstacle_are_opened_when_it_is_met() {
+    use jstsph_contact::{Friction, Law, Obstacle};
+    let mut model = model(
+        [5, 4, 1],
+        elastic(),
+        scheme(Quadrature::Particles, Integrator::Leapfrog),
+    );
+    model.bodies[0]
+        .initial_velocity
+        .fill(Vec3::new(0.0, -1.0, 0.0));
+    let positions = &model.bodies[0].body.positions;
+    let lowest = positions.iter().map(|x| x.y).fold(f64::INFINITY, f64::min);
+    let ahead = 2.0 * model.bodies[0].body.spacing;
+    model.obstacles.push(ModelObstacle {
+        obstacle: Obstacle {
+            name: "floor".into(),
+            surface: Surface::Plane {
+                point: Vec3::new(0.0, lowest - ahead, 0.0),
+                normal: Vec3::y(),
+            },
+            law: Law::Inelastic { restitution: 0.0 },
+            friction: Friction::default(),
+        },
+        velocity: None,
+        heat: None,
+    });
+    let mut simulation = Simulation::new(model).unwrap();
+    let end = 2.0 * ahead;
+    while simulation.time() < end {
+        simulation.advance_step(end).unwrap();
+        let books = &simulation.ledger.pages[0];
+        // Up to then it flies at 1 m/s.
+        if simulation.time() < 0.9 * ahead {
+            assert!(books.met.is_none());
+            assert_eq!(simulation.energies().contact, 0.0);
+        }
+    }
+    assert!(simulation.ledger.pages[0].met.is_some());
+    assert!(simulation.energies().contact < 0.0);
+    assert!(simulation.obstacle_impulses()[0].1.y < 0.0);
 }

@@ -1,5 +1,7 @@
 //! Heat conduction inside one body, conservative to round-off.
 
+use std::sync::Arc;
+
 use jstsph_material::Property;
 use jstsph_sph::{GradientOperator, Support};
 use jstsph_tensor::{Vec3, cofactor};
@@ -24,9 +26,9 @@ pub(crate) struct Conduction {
     /// The operator, where the evaluation points of the body are not the bonds already.
     operator: Option<GradientOperator>,
     /// Particles at the ends of each bond.
-    ends: Vec<[u32; 2]>,
+    ends: Arc<Vec<[u32; 2]>>,
     /// Volumes of the bonds, m³.
-    volume: Vec<f64>,
+    volume: Arc<Vec<f64>>,
 }
 
 /// State of a body as conduction sees it.
@@ -59,11 +61,14 @@ impl Conduction {
         let bonds = &input.body.bonds;
         let operator = match quadrature {
             Quadrature::Bonds => None,
-            Quadrature::Particles => Some(
-                GradientOperator::at_points(&bonds.midpoints, positions, &body.support)
-                    .or_else(|_| GradientOperator::at_points(&bonds.midpoints, positions, &support))
-                    .map_err(failed)?,
-            ),
+            Quadrature::Particles => {
+                let midpoints = bonds.midpoints(positions);
+                Some(
+                    GradientOperator::at_points(&midpoints, positions, &body.support)
+                        .or_else(|_| GradientOperator::at_points(&midpoints, positions, &support))
+                        .map_err(failed)?,
+                )
+            }
         };
         Ok(Self {
             operator,

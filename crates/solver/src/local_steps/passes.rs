@@ -3,12 +3,13 @@
 use jstsph_tensor::{Mat3, Vec3};
 
 use super::{Groups, LocalSteps, Part};
+use crate::books::Impulse;
 use crate::constraint::Stage;
-use crate::leapfrog::{Kick, book};
+use crate::leapfrog::{Kick, Push};
 use crate::profile::Phase;
 use crate::reference::{BodyReference, Reference};
 use crate::simulation::Simulation;
-use crate::state::{Deformation, Impulse, State};
+use crate::state::{Deformation, State};
 use crate::{SolverError, parallel, strain, stress};
 
 impl LocalSteps {
@@ -86,39 +87,18 @@ impl LocalSteps {
             obstacles,
             ..
         } = simulation;
-        for (body, groups) in reference.bodies.iter().zip(&self.groups) {
-            let range = body.particles.clone();
-            let force = &self.fine_force[range.clone()];
-            let out = (
-                &mut state.momentum[range.clone()],
-                &mut ledger.momentum_before[range.clone()],
-                &mut ledger.impulse[range],
-            );
-            groups
-                .moving
-                .for_each_chunk(true, out, |first, momentum, before, impulse| {
-                    before.copy_from_slice(momentum);
-                    impulse.fill(Impulse::default());
-                    for (p, force) in momentum.iter_mut().zip(&force[first..]) {
-                        *p -= force * sub_step;
-                    }
-                });
-        }
-        prescribed.apply_where(
+        let push = Push {
+            kick: Kick::Full,
             reference,
-            (time + 0.5 * sub_step, 1.0),
-            &mut state.momentum,
-            ledger,
-            |body, a| self.groups[body].moving.contains(a),
-        );
-        let travel = obstacles.travel(time, sub_step, Stage::Whole);
-        for (body, groups) in reference.bodies.iter().zip(&self.groups) {
-            for run in groups.moving.runs(0..body.particles.len(), true) {
-                obstacles.meet(&travel, (body, run.clone()), reference, state, ledger);
-                let run = body.particles.start + run.start..body.particles.start + run.end;
-                book(Kick::Full, reference, &state.momentum, ledger, run);
-            }
-        }
+            prescribed,
+            middle: time + 0.5 * sub_step,
+            obstacles,
+            travel: &obstacles.travel(time, sub_step, Stage::Whole),
+        };
+        self.push(true, push, state, ledger, |a, p| {
+            *p -= self.fine_force[a] * sub_step;
+            Impulse::default()
+        });
     }
 
     /// x of the moving particles, and their padded momenta; `share` is one over the sub-steps.

@@ -20,7 +20,11 @@ fn collision(nodes: [usize; 3], substeps: u32) -> Model {
     let mut model = model(nodes, copper(), local_scheme(substeps));
     let spin = Vec3::new(4e3, 3e3, 5e3);
     let body = &mut model.bodies[0];
-    for (velocity, x) in body.initial_velocity.iter_mut().zip(&body.body.positions) {
+    for (velocity, x) in body
+        .initial_velocity
+        .iter_mut()
+        .zip(body.body.positions.iter())
+    {
         *velocity = spin.cross(x);
         if x.y < 3.5e-3 {
             velocity.y += 800.0;

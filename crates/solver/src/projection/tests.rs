@@ -40,7 +40,7 @@ fn levers(reference: &Reference) -> Vec<(&'static str, Vec<Vec3>)> {
     let x = &reference.position;
     let tilted = Vec3::new(1.0, -2.0, 0.5);
     vec![
-        ("solid", x.clone()),
+        ("solid", x.to_vec()),
         (
             "deformed",
             x.iter()

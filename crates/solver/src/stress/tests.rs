@@ -33,7 +33,7 @@ fn deform(simulation: &mut Simulation, f: &Mat3) {
     for (x, start) in state
         .position
         .iter_mut()
-        .zip(&simulation.reference.position)
+        .zip(simulation.reference.position.iter())
     {
         *x = f * start;
     }

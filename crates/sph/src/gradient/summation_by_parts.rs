@@ -38,8 +38,12 @@ fn operator(body: &Body, form: Form, ratio: f64) -> (GradientOperator, &[f64]) {
         Form::OneVolume => (nodal(&body.volumes), &body.volumes),
         Form::Bonds => {
             let bonds = &body.bonds;
-            let operator =
-                GradientOperator::at_points(&bonds.midpoints, &body.positions, &support).unwrap();
+            let operator = GradientOperator::at_points(
+                &bonds.midpoints(&body.positions),
+                &body.positions,
+                &support,
+            )
+            .unwrap();
             (operator, &bonds.volumes)
         }
     }
@@ -157,7 +161,7 @@ fn boundary_vectors_close_the_body() {
             // Σ_c X_c ⊗ Σ_q V_q B_qc = Σ_q V_q grad X = V 1: Gauss's theorem for a linear field.
             let moment: Mat3 = vectors
                 .iter()
-                .zip(&body.positions)
+                .zip(body.positions.iter())
                 .map(|(v, x)| x * v.transpose())
                 .sum();
             let expected =

@@ -6,12 +6,12 @@ use crate::testing::{Random, assert_order, jittered_box, support_of, unit_box};
 
 /// Both operators of a body, each with its evaluation points.
 fn operators(body: &Body) -> [(GradientOperator, Vec<Vec3>); 2] {
-    let midpoints = body.bonds.midpoints.clone();
+    let midpoints = body.bonds.midpoints(&body.positions);
     let nodal =
         GradientOperator::at_particles(&body.positions, &body.weights, &support_of(body, 1.2));
     let bonds = GradientOperator::at_points(&midpoints, &body.positions, &support_of(body, 0.9));
     [
-        (nodal.unwrap(), body.positions.clone()),
+        (nodal.unwrap(), body.positions.to_vec()),
         (bonds.unwrap(), midpoints),
     ]
 }

@@ -22,12 +22,12 @@ fn bar(dimension: Dimension) -> Body {
 
 /// Operators at particles and at bonds, each with its points.
 fn operators(body: &Body) -> [(GradientOperator, Vec<Vec3>); 2] {
-    let midpoints = body.bonds.midpoints.clone();
+    let midpoints = body.bonds.midpoints(&body.positions);
     let nodal =
         GradientOperator::at_particles(&body.positions, &body.weights, &support_of(body, 1.2));
     let bonds = GradientOperator::at_points(&midpoints, &body.positions, &support_of(body, 0.8));
     [
-        (nodal.unwrap(), body.positions.clone()),
+        (nodal.unwrap(), body.positions.to_vec()),
         (bonds.unwrap(), midpoints),
     ]
 }
