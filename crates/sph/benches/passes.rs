@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use jstsph_geometry::{Axis, Body, Dimension, Lattice, Shape, Spacing, build_body};
-use jstsph_sph::{GradientOperator, Kernel, Support};
+use jstsph_sph::{GradientOperator, Kernel, LaneRow, LineOperator, Support};
 use jstsph_tensor::{Mat3, Vec3};
 
 /// The billet of equal channel angular extrusion, 8 × 50 nodes in plane strain.
@@ -63,15 +63,27 @@ fn passes(c: &mut Criterion) {
         ("bar_4131_particles", at_particles(&bar)),
         ("bar_4131_bonds", at_bonds(&bar)),
     ];
+    let midpoints = [&billet, &bar].map(|body| body.bonds.midpoints(&body.positions));
+    let lines = [
+        lines(&billet, &cases[0].1, &midpoints[0]),
+        lines(&bar, &cases[1].1, &bar.positions),
+        lines(&bar, &cases[2].1, &midpoints[1]),
+    ];
     let mut gradients = c.benchmark_group("gradient");
     for (name, operator) in &cases {
         gradient(&mut gradients, name, operator);
     }
+    gradient_in_lines::<2, 4>(&mut gradients, cases[0].0, &lines[0]);
+    gradient_in_lines::<3, 9>(&mut gradients, cases[1].0, &lines[1]);
+    gradient_in_lines::<3, 9>(&mut gradients, cases[2].0, &lines[2]);
     gradients.finish();
     let mut divergences = c.benchmark_group("divergence");
     for (name, operator) in &cases {
         divergence(&mut divergences, name, operator);
     }
+    divergence_in_lines::<2, 4>(&mut divergences, cases[0].0, &lines[0]);
+    divergence_in_lines::<3, 9>(&mut divergences, cases[1].0, &lines[1]);
+    divergence_in_lines::<3, 9>(&mut divergences, cases[2].0, &lines[2]);
     divergences.finish();
 }
 
@@ -117,6 +129,62 @@ fn divergence(group: &mut Group<'_>, name: &str, operator: &GradientOperator) {
     group.bench_function(format!("{name}_runs"), |b| {
         b.iter(|| {
             operator.divergences(0, black_box(&stresses), &mut forces);
+            black_box(forces.last().copied())
+        });
+    });
+}
+
+fn lines(body: &Body, operator: &GradientOperator, points: &[Vec3]) -> LineOperator {
+    LineOperator::new(operator, &body.positions, points, body.spacing).expect("a long body")
+}
+
+/// A field brought into its lines, and its gradients there; those of points that are alone are left out.
+fn gradient_in_lines<const D: usize, const T: usize>(
+    group: &mut Group<'_>,
+    name: &str,
+    lines: &LineOperator,
+) {
+    let (particles, points) = (lines.particles(), lines.points());
+    let values: Vec<[f64; D]> = (0..particles.slots().len())
+        .map(|a| std::array::from_fn(|k| ((a + k) as f64).sin()))
+        .collect();
+    let mut field = vec![LaneRow::<D>::ZERO; particles.rows()];
+    let mut gradients = vec![LaneRow::<T>::ZERO; points.rows()];
+    group.throughput(Throughput::Elements(points.slots().len() as u64));
+    group.bench_function(format!("{name}_lines"), |b| {
+        b.iter(|| {
+            for (piece, rows) in field.chunks_mut(particles.rows_of_piece()).enumerate() {
+                particles.arrange(piece, |a| black_box(&values)[a], rows);
+            }
+            for (piece, rows) in gradients.chunks_mut(points.rows_of_piece()).enumerate() {
+                lines.gradients(piece, &field, 1.0, rows);
+            }
+            black_box(gradients.last().copied())
+        });
+    });
+}
+
+/// The same for divergences.
+fn divergence_in_lines<const D: usize, const T: usize>(
+    group: &mut Group<'_>,
+    name: &str,
+    lines: &LineOperator,
+) {
+    let (particles, points) = (lines.particles(), lines.points());
+    let values: Vec<[f64; T]> = (0..points.slots().len())
+        .map(|q| std::array::from_fn(|k| ((q + k) as f64).sin()))
+        .collect();
+    let mut tensors = vec![LaneRow::<T>::ZERO; points.rows()];
+    let mut forces = vec![LaneRow::<D>::ZERO; particles.rows()];
+    group.throughput(Throughput::Elements(points.slots().len() as u64));
+    group.bench_function(format!("{name}_lines"), |b| {
+        b.iter(|| {
+            for (piece, rows) in tensors.chunks_mut(points.rows_of_piece()).enumerate() {
+                points.arrange(piece, |q| black_box(&values)[q], rows);
+            }
+            for (piece, rows) in forces.chunks_mut(particles.rows_of_piece()).enumerate() {
+                lines.divergences(piece, &tensors, rows);
+            }
             black_box(forces.last().copied())
         });
     });
