@@ -55,6 +55,8 @@ pub(crate) fn step(simulation: &mut Simulation, end: f64) -> Result<(), SolverEr
     simulation.finished(Phase::Gradient);
     simulation.drift_strains(dt);
     simulation.finished(Phase::Strain);
+    simulation.renew_acoustic_limit();
+    simulation.finished(Phase::TimeStep);
     simulation.advance_time(dt, end);
     simulation.evaluate_stress(dt)?;
     simulation.commit_history();

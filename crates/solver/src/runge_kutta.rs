@@ -58,6 +58,7 @@ pub(crate) fn step(
     method: &Method,
     end: f64,
 ) -> Result<(), SolverError> {
+    simulation.renew_acoustic_limit();
     let dt = simulation.next_time_step(end)?;
     simulation.finished(Phase::TimeStep);
     let time = simulation.time;

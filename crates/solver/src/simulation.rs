@@ -10,7 +10,7 @@ use crate::eulerian::CurrentKernels;
 use crate::force::Loads;
 use crate::heat::{HeatProcess, HeatStep, OutOfRange};
 use crate::local_steps::LocalSteps;
-use crate::model::{Formulation, Model, Scheme};
+use crate::model::{Formulation, Integrator, Model, Scheme};
 use crate::profile::{Observer, Phase};
 use crate::reference::Reference;
 use crate::runge_kutta::{Method, Registers};
@@ -98,7 +98,11 @@ impl Simulation {
         let constraints = (&prescribed, &obstacles);
         let mut ledger = Ledger::new(&reference, momentum, constraints, has_impulses);
         let loads = Loads::new(&model);
-        let mut work = Workspace::new(&reference);
+        let keeps_rates = model.scheme.integrator != Integrator::Leapfrog
+            || model.scheme.formulation == Formulation::EulerianKernel
+            || model.scheme.stabilisation.upwind != 0.0
+            || model.scheme.stabilisation.hourglass != 0.0;
+        let mut work = Workspace::new(&reference, keeps_rates);
         if !loads.is_empty() {
             work.external_force = vec![Vec3::zeros(); particles];
         }
@@ -151,6 +155,9 @@ impl Simulation {
             &mut simulation.state.momentum,
             &mut simulation.ledger,
         );
+        if simulation.local.is_none() {
+            simulation.renew_acoustic_limit();
+        }
         simulation.evaluate_stress(0.0)?;
         let energies = simulation.energies();
         simulation.initial_energy = energies.kinetic + energies.elastic;

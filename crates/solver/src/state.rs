@@ -119,7 +119,8 @@ impl Deformation<'_> {
 pub(crate) struct Workspace {
     /// The momenta with a fourth number, zero, for vector loads.
     pub(crate) padded_momentum: Vec<[f64; 4]>,
-    /// G = grad(p/ρ) at the points, 1/s.
+    /// G = grad(p/ρ) at the points, 1/s; empty where only the drift of the leapfrog needs it, which does not
+    /// keep it.
     pub(crate) velocity_gradient: Vec<Mat3>,
     /// Fields in the order of the lines of bodies.
     pub(crate) lines: LineFields,
@@ -159,17 +160,23 @@ pub(crate) struct Workspace {
 impl Workspace {
     /// What the frequency of the bodies needs.
     pub(crate) fn of_strains(reference: &Reference) -> Self {
+        Self::with(reference, true)
+    }
+
+    fn with(reference: &Reference, keeps_rates: bool) -> Self {
         let (particles, points) = (reference.position.len(), reference.point_volume.len());
+        let rates = if keeps_rates { points } else { 0 };
         Self {
             padded_momentum: vec![[0.0; 4]; particles],
-            velocity_gradient: vec![Mat3::zeros(); points],
+            velocity_gradient: vec![Mat3::zeros(); rates],
             volume_change: vec![0.0; points],
             lines: LineFields::new(reference),
             ..Self::default()
         }
     }
 
-    pub(crate) fn new(reference: &Reference) -> Self {
+    /// `keeps_rates` tells whether G has a place of its own.
+    pub(crate) fn new(reference: &Reference, keeps_rates: bool) -> Self {
         let (particles, points) = (reference.position.len(), reference.point_volume.len());
         let pairs = reference.bodies.iter().any(|body| body.pairs.is_some());
         let averaged = if pairs { particles } else { 0 };
@@ -196,7 +203,7 @@ impl Workspace {
             hourglass_stress: Vec::new(),
             hourglass_point_stress: Vec::new(),
             stretch_bounds: StretchBounds::new(reference),
-            ..Self::of_strains(reference)
+            ..Self::with(reference, keeps_rates)
         }
     }
 }

@@ -69,7 +69,7 @@ fn frequencies_follow_the_deformation() {
         let simulation = Simulation::new(model([6, 5, 4], elastic(), scheme)).unwrap();
         let reference = simulation.reference();
         let mut frequency = Frequency::new(reference);
-        let mut work = Workspace::new(reference);
+        let mut work = Workspace::new(reference, true);
         let mut of = |state: Option<&State>| {
             frequency.largest(
                 &mut work,

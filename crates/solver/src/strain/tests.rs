@@ -22,7 +22,7 @@ fn deformed(strains: Strains, integrator: Integrator) -> (Reference, State, Work
     let model: Model = model([4, 3, 3], elastic(), scheme);
     let reference = Reference::new(&model).unwrap();
     let mut state = State::undeformed(&reference, &scheme, vec![Vec3::zeros(); 36]);
-    let mut work = Workspace::new(&reference);
+    let mut work = Workspace::new(&reference, true);
     let mut random = Random(29);
     for q in 0..state.deformation_gradient.len() {
         state.deformation_gradient[q] = Mat3::identity() + random.tensor() * 0.2;

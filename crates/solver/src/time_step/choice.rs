@@ -3,7 +3,7 @@
 use super::{StableStep, stable_step};
 use crate::SolverError;
 use crate::acoustic::Frequency;
-use crate::model::{Scheme, StepLimit};
+use crate::model::{Integrator, Scheme, StepLimit};
 use crate::reference::Reference;
 use crate::simulation::Simulation;
 use crate::state::{State, Workspace};
@@ -44,15 +44,15 @@ impl AcousticLimit {
         })
     }
 
-    /// How much longer than `time`, that of [`stable_step`], the step may be.
-    fn gain(
+    /// Looks again if that is due. `time` is that of [`stable_step`].
+    fn renew(
         &mut self,
         work: &mut Workspace,
         reference: &Reference,
         scheme: &Scheme,
         state: &State,
         (time, step): (f64, u64),
-    ) -> f64 {
+    ) {
         let age = step - self.step;
         let changed = (time - self.time).abs() > CHANGE * self.time;
         if self.gain == 0.0 || age >= LATEST || (changed && age >= EARLIEST) {
@@ -60,7 +60,6 @@ impl AcousticLimit {
             self.time = time;
             self.step = step;
         }
-        self.gain
     }
 
     /// What a restart needs.
@@ -87,13 +86,33 @@ impl Simulation {
         let gain = self.acoustic.clone().map_or(1.0, |mut limit| {
             let now = (time, self.step);
             let work = &mut Workspace::of_strains(&self.reference);
-            limit.gain(work, &self.reference, &self.scheme, &self.state, now)
+            limit.renew(work, &self.reference, &self.scheme, &self.state, now);
+            limit.gain
         });
         self.scheme.cfl * gain * time
     }
 
     fn stretch_limit(&self) -> StableStep {
         stable_step(&self.reference, &self.state, &self.work.stretch_bounds)
+    }
+
+    /// Looks at the frequency of the deformed bodies if that is due. With the leapfrog the stresses of the
+    /// workspace are overwritten, in the middle of a step when they are no longer needed; with other methods
+    /// the velocity gradients, at its beginning.
+    pub(crate) fn renew_acoustic_limit(&mut self) {
+        let time = self.stretch_limit().time;
+        // Strains that are not finite are found where the step is chosen.
+        if let Some(limit) = self.acoustic.as_mut().filter(|_| time.is_finite()) {
+            let (now, work) = ((time, self.step), &mut self.work);
+            let leapfrog = self.scheme.integrator == Integrator::Leapfrog;
+            if leapfrog {
+                std::mem::swap(&mut work.velocity_gradient, &mut work.scaled_stress);
+            }
+            limit.renew(work, &self.reference, &self.scheme, &self.state, now);
+            if leapfrog {
+                std::mem::swap(&mut work.velocity_gradient, &mut work.scaled_stress);
+            }
+        }
     }
 
     /// Δt = CFL min Δx λ_min / c (3.17), or the acoustic limit, cut at `end`; checks that strains are
@@ -103,12 +122,8 @@ impl Simulation {
         if !stable.time.is_finite() {
             return Err(self.not_finite(stable.point));
         }
-        let mut dt = self.scheme.cfl * stable.time;
-        if let Some(limit) = &mut self.acoustic {
-            let now = (stable.time, self.step);
-            let work = &mut self.work;
-            dt *= limit.gain(work, &self.reference, &self.scheme, &self.state, now);
-        }
+        let gain = self.acoustic.as_ref().map_or(1.0, |limit| limit.gain);
+        let dt = self.scheme.cfl * stable.time * gain;
         self.check_time_step(dt, &stable)?;
         Ok(self.cut_at(end, dt))
     }
@@ -158,7 +173,8 @@ mod tests {
         let mut limit = AcousticLimit::new(&scheme, reference).unwrap();
         let mut gain = |state: &State, time: f64, step: u64| {
             let work = &mut Workspace::of_strains(reference);
-            limit.gain(work, reference, &scheme, state, (time, step))
+            limit.renew(work, reference, &scheme, state, (time, step));
+            limit.gain
         };
         let time = stable_step(reference, &state, &StretchBounds::default()).time;
         let first = gain(&state, time, 7);
