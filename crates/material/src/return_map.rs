@@ -24,7 +24,7 @@ const MAX_ITERATIONS: usize = 100;
 /// of the ACM 16 (1973), 123-124, with x = g/(A + B) and the share p = B/(A + B):
 ///
 /// ```text
-///   D = D₀ (1 + x (1 + ⅔ x − ½ p x)/(1 + ⅔ x − p x)),   |x| < 1
+///   D = D₀ (1 + x (1 + ⅔ x − ½ p x)/(1 + ⅔ x − p x)),   |x| < 1            [eq:return-step]
 /// ```
 ///
 /// Longer steps are Newton's upwards, in D, and hardly less than those in ln D downwards: neither passes the root.
