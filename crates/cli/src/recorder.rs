@@ -219,7 +219,7 @@ impl<'a> Recorder<'a> {
             if let Some(good) = &mut self.good
                 && simulation.step_count() >= good.step + STEPS_BETWEEN_SAVES
             {
-                *good = simulation.save();
+                simulation.save_into(good);
             }
         }
         if frame {
@@ -227,7 +227,7 @@ impl<'a> Recorder<'a> {
         }
         // Last: a restart file finds the rows and frames of its own time written.
         if self.next.restart.is_due(simulation) {
-            self.restart(simulation)?;
+            self.restart_later(simulation)?;
         }
         Ok(())
     }
@@ -284,6 +284,20 @@ impl<'a> Recorder<'a> {
         self.settle()?;
         let folder = self.folder.restart();
         restart::write(&folder, simulation, &self.resolved, &self.last)
+    }
+
+    /// The same while the run goes on, if it is small.
+    fn restart_later(&mut self, simulation: &Simulation) -> Result<(), OutputError> {
+        let Writer::Beside(thread) = &mut self.writer else {
+            return self.restart(simulation).map(|_| ());
+        };
+        let rows = self.history.syncing()?;
+        let data = encode(simulation.save(), &self.resolved, &self.last);
+        let (folder, step) = (self.folder.restart(), simulation.step_count());
+        thread.give(Box::new(move |_| {
+            rows()?;
+            write_restart(&folder, step, &data)
+        }))
     }
 
     /// Rows that a power failure takes must not be missing before a state that it leaves.
