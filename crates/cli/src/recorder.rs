@@ -24,6 +24,8 @@ pub(crate) struct Recorder<'a> {
     writer: Writer,
     next: Next,
     last: LastRow,
+    /// Whether a state may still be on its way to the disk.
+    state_is_open: bool,
     /// The resolved case, with the names of the copies of the files that it reads.
     resolved: String,
     /// The state at one of the last rows, which is known to be finite; of a large run the latest
@@ -200,6 +202,7 @@ impl<'a> Recorder<'a> {
                 restart: Due::after(time, case.output.restart_interval),
             },
             last,
+            state_is_open: false,
             resolved,
             good: is_small(simulation).then(|| simulation.save()),
         };
@@ -291,6 +294,11 @@ impl<'a> Recorder<'a> {
         let Writer::Beside(thread) = &mut self.writer else {
             return self.restart(simulation).map(|_| ());
         };
+        // Of two states one is on the disk: no more is lost than what two intervals have done.
+        if self.state_is_open {
+            thread.wait()?;
+        }
+        self.state_is_open = true;
         let rows = self.history.syncing()?;
         let data = encode(simulation.save(), &self.resolved, &self.last);
         let (folder, step) = (self.folder.restart(), simulation.step_count());

@@ -204,8 +204,7 @@ impl Thread {
     /// Of an earlier one.
     pub(crate) fn give(&mut self, job: Job) -> Result<(), OutputError> {
         while let Ok(outcome) = self.done.try_recv() {
-            self.open -= 1;
-            outcome?;
+            self.received(outcome)?;
         }
         let jobs = self.jobs.as_ref();
         if jobs.is_some_and(|jobs| jobs.send(job).is_ok()) {
@@ -221,13 +220,21 @@ impl Thread {
     ///
     /// # Errors
     /// The first error there was.
-    fn wait(&mut self) -> Result<(), OutputError> {
+    pub(crate) fn wait(&mut self) -> Result<(), OutputError> {
         while self.open > 0 {
             let outcome = self.done.recv().map_err(|_| self.lost())?;
-            self.open -= 1;
-            outcome?;
+            self.received(outcome)?;
         }
         Ok(())
+    }
+
+    /// Takes note of an outcome; after an error nothing more is accepted.
+    fn received(&mut self, outcome: Result<PathBuf, OutputError>) -> Result<(), OutputError> {
+        self.open -= 1;
+        if outcome.is_err() {
+            self.jobs = None;
+        }
+        outcome.map(|_| ())
     }
 
     fn lost(&self) -> OutputError {
