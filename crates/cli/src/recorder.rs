@@ -24,6 +24,8 @@ pub(crate) struct Recorder<'a> {
     writer: Writer,
     next: Next,
     last: LastRow,
+    /// Whether a state may still be on its way to the disk.
+    state_is_open: bool,
     /// The resolved case, with the names of the copies of the files that it reads.
     resolved: String,
     /// The state at one of the last rows, which is known to be finite; of a large run the latest
@@ -200,6 +202,7 @@ impl<'a> Recorder<'a> {
                 restart: Due::after(time, case.output.restart_interval),
             },
             last,
+            state_is_open: false,
             resolved,
             good: is_small(simulation).then(|| simulation.save()),
         };
@@ -219,7 +222,7 @@ impl<'a> Recorder<'a> {
             if let Some(good) = &mut self.good
                 && simulation.step_count() >= good.step + STEPS_BETWEEN_SAVES
             {
-                *good = simulation.save();
+                simulation.save_into(good);
             }
         }
         if frame {
@@ -227,7 +230,7 @@ impl<'a> Recorder<'a> {
         }
         // Last: a restart file finds the rows and frames of its own time written.
         if self.next.restart.is_due(simulation) {
-            self.restart(simulation)?;
+            self.restart_later(simulation)?;
         }
         Ok(())
     }
@@ -284,6 +287,25 @@ impl<'a> Recorder<'a> {
         self.settle()?;
         let folder = self.folder.restart();
         restart::write(&folder, simulation, &self.resolved, &self.last)
+    }
+
+    /// The same while the run goes on, if it is small.
+    fn restart_later(&mut self, simulation: &Simulation) -> Result<(), OutputError> {
+        let Writer::Beside(thread) = &mut self.writer else {
+            return self.restart(simulation).map(|_| ());
+        };
+        // Of two states one is on the disk: no more is lost than what two intervals have done.
+        if self.state_is_open {
+            thread.wait()?;
+        }
+        self.state_is_open = true;
+        let rows = self.history.syncing()?;
+        let data = encode(simulation.save(), &self.resolved, &self.last);
+        let (folder, step) = (self.folder.restart(), simulation.step_count());
+        thread.give(Box::new(move |_| {
+            rows()?;
+            write_restart(&folder, step, &data)
+        }))
     }
 
     /// Rows that a power failure takes must not be missing before a state that it leaves.

@@ -1,4 +1,4 @@
-//! Frames are written by a thread of their own while the run goes on; those of large runs by the threads
+//! Frames, and restart files, are written by a thread of their own while the run goes on; those of large runs by the threads
 //! of the run, field by field.
 
 use std::path::PathBuf;
@@ -134,14 +134,17 @@ impl Writer {
     }
 }
 
-/// Writes the frames it is given in that order, one at a time. A frame is only accepted when none
-/// waits, so that no more than two are held in memory.
+/// Something to be written.
+type Job = Box<dyn FnOnce(&mut Series) -> Result<PathBuf, OutputError> + Send>;
+
+/// Writes what it is given in that order, one thing at a time. Another is only accepted when none waits but
+/// one, so that no more than three are held in memory.
 ///
-/// An error reaches whoever gives it the next frame, or waits for the last; nothing is written after it.
+/// An error reaches whoever gives it the next, or waits for the last; nothing is written after it.
 pub(crate) struct Thread {
     /// Where it writes, for its messages.
     folder: PathBuf,
-    frames: Option<SyncSender<Box<Frame<'static>>>>,
+    jobs: Option<SyncSender<Job>>,
     done: Receiver<Result<PathBuf, OutputError>>,
     handle: Option<JoinHandle<()>>,
     /// Frames given whose outcome has not been received.
@@ -156,14 +159,14 @@ impl Thread {
     /// The system has no thread to give.
     pub(crate) fn start(mut series: Series, folder: PathBuf) -> Result<Self, OutputError> {
         let last_frame = series.last_frame;
-        // No buffer: giving a frame waits until the thread takes it.
-        let (frames, queue) = sync_channel::<Box<Frame<'static>>>(0);
+        // One waits, so that a state that follows a frame does not make the run wait.
+        let (jobs, queue) = sync_channel::<Job>(1);
         let (report, done) = channel();
         let handle = std::thread::Builder::new()
             .name("writer".to_owned())
             .spawn(move || {
-                for frame in queue {
-                    let outcome = series.write(*frame);
+                for job in queue {
+                    let outcome = job(&mut series);
                     let failed = outcome.is_err();
                     if report.send(outcome).is_err() || failed {
                         return;
@@ -177,7 +180,7 @@ impl Thread {
             })?;
         Ok(Self {
             folder,
-            frames: Some(frames),
+            jobs: Some(jobs),
             done,
             handle: Some(handle),
             open: 0,
@@ -192,16 +195,23 @@ impl Thread {
     fn frame(&mut self, frame: Frame<'static>) -> Result<(), OutputError> {
         frame.check()?;
         self.last_frame = Some(frame.time);
+        self.give(Box::new(move |series| series.write(frame)))
+    }
+
+    /// Has something written after everything that was given before.
+    ///
+    /// # Errors
+    /// Of an earlier one.
+    pub(crate) fn give(&mut self, job: Job) -> Result<(), OutputError> {
         while let Ok(outcome) = self.done.try_recv() {
-            self.open -= 1;
-            outcome?;
+            self.received(outcome)?;
         }
-        let frames = self.frames.as_ref();
-        if frames.is_some_and(|frames| frames.send(Box::new(frame)).is_ok()) {
+        let jobs = self.jobs.as_ref();
+        if jobs.is_some_and(|jobs| jobs.send(job).is_ok()) {
             self.open += 1;
             return Ok(());
         }
-        // The thread has ended, with an error that may have come while this frame waited.
+        // The thread has ended, with an error that may have come while this one waited.
         self.wait()?;
         Err(self.lost())
     }
@@ -210,13 +220,21 @@ impl Thread {
     ///
     /// # Errors
     /// The first error there was.
-    fn wait(&mut self) -> Result<(), OutputError> {
+    pub(crate) fn wait(&mut self) -> Result<(), OutputError> {
         while self.open > 0 {
             let outcome = self.done.recv().map_err(|_| self.lost())?;
-            self.open -= 1;
-            outcome?;
+            self.received(outcome)?;
         }
         Ok(())
+    }
+
+    /// Takes note of an outcome; after an error nothing more is accepted.
+    fn received(&mut self, outcome: Result<PathBuf, OutputError>) -> Result<(), OutputError> {
+        self.open -= 1;
+        if outcome.is_err() {
+            self.jobs = None;
+        }
+        outcome.map(|_| ())
     }
 
     fn lost(&self) -> OutputError {
@@ -231,7 +249,7 @@ impl Thread {
 impl Drop for Thread {
     /// Lets the thread finish what it was given.
     fn drop(&mut self) {
-        self.frames = None;
+        self.jobs = None;
         if let Some(handle) = self.handle.take() {
             // A panic of the thread has been printed and shows as a lost thread above.
             let _ = handle.join();

@@ -158,6 +158,16 @@ impl HistoryWriter {
     pub fn sync(&self) -> Result<(), OutputError> {
         self.table.sync()
     }
+
+    /// What waits, on any thread, until the rows written so far are on the disk.
+    ///
+    /// # Errors
+    /// Those of [`TableWriter::syncing`].
+    pub fn syncing(
+        &self,
+    ) -> Result<impl FnOnce() -> Result<(), OutputError> + Send + 'static, OutputError> {
+        self.table.syncing()
+    }
 }
 
 fn columns(probes: &[String]) -> Vec<String> {

@@ -206,9 +206,20 @@ impl TableWriter {
     /// # Errors
     /// [`OutputError::Io`].
     pub fn sync(&self) -> Result<(), OutputError> {
-        self.file
-            .sync_data()
-            .map_err(OutputError::io("write", &self.path))
+        self.syncing()?()
+    }
+
+    /// What waits, on any thread, until the rows written so far are on the disk.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`], here and when it waits.
+    pub fn syncing(
+        &self,
+    ) -> Result<impl FnOnce() -> Result<(), OutputError> + Send + 'static, OutputError> {
+        let path = self.path.clone();
+        let file = self.file.try_clone();
+        let file = file.map_err(OutputError::io("write", &path))?;
+        Ok(move || file.sync_data().map_err(OutputError::io("write", &path)))
     }
 }
 

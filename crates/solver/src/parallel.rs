@@ -102,6 +102,22 @@ pub(crate) fn for_each_triple<A: Send, B: Send, C: Send>(
         });
 }
 
+/// Calls `action(i, &mut items[i])` for every i of a few items each of which is an array about as long as the
+/// simulation has `particles`.
+pub(crate) fn for_each_large<T: Send>(
+    particles: usize,
+    items: &mut [T],
+    action: impl Fn(usize, &mut T) + Sync,
+) {
+    if serial(particles) {
+        let items = items.iter_mut().enumerate();
+        items.for_each(|(i, item)| action(i, item));
+        return;
+    }
+    let items = items.par_iter_mut().enumerate();
+    items.for_each(|(i, item)| action(i, item));
+}
+
 /// Calls `action(offset, run)` on runs that together are all items, where `offset` is the index of the
 /// first of them. How long they are depends on the threads: for work on single items only.
 pub(crate) fn for_each_run<T: Send>(items: &mut [T], action: impl Fn(usize, &mut [T]) + Sync) {

@@ -8,6 +8,7 @@ use jstsph_tensor::{Mat3, Vec3};
 
 use crate::SolverError;
 use crate::books::{ContactSlot, Work};
+use crate::parallel;
 use crate::simulation::Simulation;
 
 /// Everything that moves in a simulation; with the model it restores the simulation bit by bit.
@@ -26,7 +27,7 @@ pub struct Saved {
 }
 
 /// Appends the numbers of some items.
-type Append<'a> = dyn Fn(Range<usize>, &mut Vec<f64>) + 'a;
+type Append<'a> = dyn Fn(Range<usize>, &mut Vec<f64>) + Sync + 'a;
 
 /// One array of the state, read piece by piece: a large state is not held in memory once more.
 pub struct SavedArray<'a> {
@@ -40,10 +41,10 @@ pub struct SavedArray<'a> {
 }
 
 impl<'a> SavedArray<'a> {
-    fn of<T, const N: usize>(
+    fn of<T: Sync, const N: usize>(
         name: &str,
         items: &'a [T],
-        numbers: impl Fn(&T) -> [f64; N] + 'a,
+        numbers: impl Fn(&T) -> [f64; N] + Sync + 'a,
     ) -> Self {
         Self {
             name: name.to_owned(),
@@ -58,7 +59,7 @@ impl<'a> SavedArray<'a> {
     fn by<const N: usize>(
         name: &str,
         items: usize,
-        numbers: impl Fn(usize) -> [f64; N] + 'a,
+        numbers: impl Fn(usize) -> [f64; N] + Sync + 'a,
     ) -> Self {
         Self {
             name: name.to_owned(),
@@ -105,7 +106,7 @@ impl<'a> SavedArray<'a> {
         })
     }
 
-    fn work(name: &str, items: usize, work: impl Fn(usize) -> Work + 'a) -> Self {
+    fn work(name: &str, items: usize, work: impl Fn(usize) -> Work + Sync + 'a) -> Self {
         Self::by(name, items, move |a| {
             let w = work(a);
             [w.numerical, w.external, w.contact, w.friction]
@@ -255,18 +256,33 @@ impl Simulation {
     /// The complete state.
     #[must_use]
     pub fn save(&self) -> Saved {
-        let arrays = self.saved_arrays().into_iter().map(|array| {
-            let mut values = Vec::with_capacity(array.items * array.width);
-            array.append_to(0..array.items, &mut values);
-            (array.name, values)
+        let mut saved = Saved {
+            time: 0.0,
+            time_step: 0.0,
+            step: 0,
+            synchronised: true,
+            arrays: Vec::new(),
+        };
+        self.save_into(&mut saved);
+        saved
+    }
+
+    /// [`save`](Self::save) that uses the memory of an earlier state of the same simulation.
+    pub fn save_into(&self, saved: &mut Saved) {
+        let arrays = self.saved_arrays();
+        saved.arrays.resize_with(arrays.len(), Default::default);
+        let particles = self.state.position.len();
+        parallel::for_each_large(particles, &mut saved.arrays, |k, (name, values)| {
+            let array = &arrays[k];
+            name.clone_from(&array.name);
+            values.clear();
+            values.reserve_exact(array.items * array.width);
+            array.append_to(0..array.items, values);
         });
-        Saved {
-            time: self.time,
-            time_step: self.dt,
-            step: self.step,
-            synchronised: self.synchronised,
-            arrays: arrays.collect(),
-        }
+        saved.time = self.time;
+        saved.time_step = self.dt;
+        saved.step = self.step;
+        saved.synchronised = self.synchronised;
     }
 
     /// The arrays of [`save`](Self::save) without a copy of them.

@@ -130,10 +130,11 @@ fn inspect(folder: &Path) -> Option<f64> {
     let rows = read_table(&history).expect("a table");
     let times = rows.column("time").expect("times");
     assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "{times:?}");
-    // A row is due every 2e-7 s, a step is about 7e-8 s.
+    // A row is due every 2e-7 s, a step is about 7e-8 s. The run does not wait for a state to be on the disk
+    // before the next one is due.
     let lost = times.last().map_or(0.0, |last| last - time_of(&latest));
     assert!(
-        (-3e-7..RESTART_INTERVAL + 3e-7).contains(&lost),
+        (-3e-7..2.0 * RESTART_INTERVAL + 3e-7).contains(&lost),
         "{lost} s are lost"
     );
     Some(time_of(&latest))
