@@ -150,8 +150,7 @@ impl Choice {
                 self.point_time[q] = point_time(body, &state.deformation_gradient[q]);
             }
         }
-        let smallest = self.point_time.iter().fold(f64::INFINITY, |a, b| a.min(*b));
-        let limit = self.survey(simulation, smallest);
+        let limit = self.survey(simulation);
         let outcome = self.best(limit);
         let thresholds = &outcome.thresholds[..usize::from(outcome.finest)];
         for (body, groups) in reference.bodies.iter().zip(&mut *groups) {
@@ -173,7 +172,8 @@ impl Choice {
     ///
     /// The fastest vibrations of what is compressed stay there: they are looked for in its
     /// surroundings only.
-    fn survey(&mut self, simulation: &Simulation, smallest: f64) -> f64 {
+    pub(super) fn survey(&mut self, simulation: &Simulation) -> f64 {
+        let smallest = self.point_time.iter().fold(f64::INFINITY, |a, b| a.min(*b));
         self.candidates.clear();
         let all = self.point_time.len();
         let mut trial = std::mem::take(&mut self.trial);

@@ -1,8 +1,10 @@
 use super::*;
+use crate::acoustic::{Frequency, Vibrations};
 use crate::constraint;
 use crate::model::{
     Condition, ConditionKind, Integrator, Model, ModelObstacle, Quadrature, Signal, StepLimit,
 };
+use crate::state::Workspace;
 use crate::testing::{copper, in_pool, model, scheme};
 use jstsph_contact::{Friction, Law, Obstacle, Surface};
 
@@ -283,6 +285,23 @@ fn fine_and_slow_stresses_add_up() {
     }
     assert!(mixed > 0);
     assert_eq!(pressure, local.fine_pressure);
+}
+
+#[test]
+fn the_fastest_vibration_is_found_in_its_surroundings() {
+    let mut simulation = Simulation::new(collision([4, 25, 4], 8)).unwrap();
+    run(&mut simulation, 15e-6);
+    assert_grouped(&simulation);
+    let mut local = simulation.local.take().unwrap();
+    local.regroup(&simulation);
+    let found = local.choice.survey(&simulation);
+    let reference = simulation.reference();
+    let mut work = Workspace::of_strains(reference);
+    let (scheme, state) = (simulation.scheme(), simulation.state());
+    let all = Vibrations::default();
+    let limit = Frequency::new(reference).limit(&mut work, reference, scheme, state, all);
+    // The vibration decays within its surroundings, which are whole tiles.
+    assert!((found / limit - 1.0).abs() < 1e-2, "{found} {limit}");
 }
 
 #[test]
