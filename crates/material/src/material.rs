@@ -162,6 +162,22 @@ pub trait Material: Clone + Debug + Send + Sync + 'static {
     /// response at `now` returned.
     fn point_energy(&self, now: &Kinematics, history: &Self::History) -> f64;
 
+    /// [`point_energy`](Self::point_energy) for [`TILE`](jstsph_tensor::lanes::TILE) points at once, the
+    /// same to round-off; J is not read. Returns false, as [`respond_tile`](Self::respond_tile), when the
+    /// points have to be asked one by one.
+    ///
+    /// # Panics
+    /// If there are fewer histories than points: a bug in the caller.
+    #[inline]
+    fn point_energies_tile(
+        &self,
+        _now: &KinematicsTile,
+        _history: &[Self::History],
+        _energies: &mut [f64; jstsph_tensor::lanes::TILE],
+    ) -> bool {
+        false
+    }
+
     /// Thermal properties; `None` for a model that has none, whose bodies keep their temperature.
     fn thermal(&self) -> Option<&Thermal> {
         None

@@ -14,14 +14,16 @@ use crate::state::{State, or_zero};
 use crate::{SolverError, force};
 
 use choice::{Choice, stretch_limits};
+use passes::{Span, share};
 
 mod choice;
 mod groups;
 mod passes;
+mod split;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use groups::{Groups, Part};
+pub(crate) use groups::{Groups, LARGEST_LEVEL, Levels, Part, Tiles};
 
 /// Groups and buffers; allocated once.
 #[derive(Clone, Debug)]
@@ -29,25 +31,26 @@ pub(crate) struct LocalSteps {
     /// Groups of every body.
     groups: Vec<Groups>,
     choice: Choice,
-    /// The part of V P that acts in sub-steps; zero at points that are not fine.
+    /// V P of the points that make sub-steps as it acts in them, zero at the others: between steps of a
+    /// level what acts there, at the end of the whole step what has acted before.
     fine_stress: Vec<Mat3>,
-    /// τ_vol of the particles whose J is fine, zero for the others.
-    fine_pressure: Vec<f64>,
+    /// For every level from 1 on: τ_vol of the particles whose J has it, zero for the others.
+    fine_pressure: Vec<Vec<f64>>,
     /// T of `fine_stress`, of the particles that move in sub-steps.
     fine_force: Vec<Vec3>,
-    /// Mean momenta of the moving particles over the step.
-    mean_momentum: Vec<Vec3>,
-    /// Changes of volume of the fine points so far in this step.
-    volume_change: Vec<f64>,
+    /// For every level: what finer ones have done in its present step.
+    sums: Vec<Sums>,
     /// Momenta of an earlier kick, for the books.
     momentum_before: Vec<Vec3>,
 }
 
-/// Durations of a kick: of the impulses of the whole step and of those of a sub-step.
-#[derive(Clone, Copy, Debug)]
-struct Durations {
-    coarse: f64,
-    fine: f64,
+/// What the finer levels have done in a step of a level.
+#[derive(Clone, Debug)]
+struct Sums {
+    /// Mean momenta of the particles that move with finer levels.
+    momentum: Vec<Vec3>,
+    /// Changes of volume of the finer points.
+    volume_change: Vec<f64>,
 }
 
 impl LocalSteps {
@@ -55,22 +58,21 @@ impl LocalSteps {
     pub(crate) fn new(scheme: &Scheme, reference: &Reference) -> Option<Box<Self>> {
         let (particles, points) = (reference.position.len(), reference.point_volume.len());
         (scheme.substeps > 1).then(|| {
+            let levels = scheme.substeps.ilog2() as usize;
+            let sums = Sums {
+                momentum: vec![Vec3::zeros(); particles],
+                volume_change: vec![0.0; points],
+            };
             Box::new(Self {
                 groups: reference.bodies.iter().map(Groups::new).collect(),
                 choice: Choice::new(scheme, reference),
                 fine_stress: vec![Mat3::zeros(); points],
-                fine_pressure: vec![0.0; particles],
+                fine_pressure: vec![vec![0.0; particles]; levels],
                 fine_force: vec![Vec3::zeros(); particles],
-                mean_momentum: vec![Vec3::zeros(); particles],
-                volume_change: vec![0.0; points],
+                sums: vec![sums; levels + 1],
                 momentum_before: vec![Vec3::zeros(); particles],
             })
         })
-    }
-
-    /// Sub-steps of a step.
-    fn ratio(&self) -> f64 {
-        f64::from(self.choice.ratio())
     }
 
     /// Chooses the groups anew at the present state.
@@ -88,25 +90,17 @@ impl LocalSteps {
         let now = stretch_limits(simulation, &self.groups);
         self.choice.next_time_step(simulation, &now, end)
     }
-
-    /// A duration for what acts once a step, and its share for what acts in every sub-step.
-    fn durations(&self, duration: f64) -> Durations {
-        Durations {
-            coarse: duration,
-            fine: duration / self.ratio(),
-        }
-    }
 }
 
-/// One step, `[eq:local-step]`: with Δ = mδ
+/// One step, `[eq:local-step]`: a step Δ of level 0, where a step of level k is
 ///
 /// ```text
-///   m times:  x, F, H, J of the fine parts by δ with pⁿ⁺⁽²ʲ⁺¹⁾ᐟ²ᵐ; their stress; commit history
-///             p += δ R of the fine stress (between the sub-steps)
-///   x, F, H, J of the rest by Δ with the mean of the momenta; stress; commit history
-///   p += Δ R + δ R of the fine stress
-///   prescribed velocities, contact: of the particles that move in sub-steps after each of their kicks
+///   two steps of level k + 1; between them, of the levels > k: commit history,
+///       p += δ R of their stresses, each with the δ of its level; prescribed velocities, contact
+///   x, F, H, J of what is of level k, with the mean of the momenta over the step; stress
 /// ```
+///
+/// After it history is committed, and all stresses act, each with the δ of its level.
 pub(crate) fn step(
     simulation: &mut Simulation,
     local: &mut LocalSteps,
@@ -118,35 +112,37 @@ pub(crate) fn step(
         simulation.finished(Phase::TimeStep);
         local.forces(simulation);
         let dt = simulation.dt;
-        local.kick(simulation, Kick::Opening, local.durations(0.5 * dt), dt);
+        local.kick(simulation, Kick::Opening, 0.5 * dt, dt);
         simulation.synchronised = false;
     }
     // Shorter than the travel that was planned only if `end` was moved back since.
     let dt = simulation.dt.min(end - simulation.time);
-    local.make_sub_steps(simulation, dt)?;
-    local.advance_rest(simulation, dt)?;
+    let start = simulation.time;
+    local.advance(simulation, 0, Span { start, length: dt })?;
+    local.join_stress(simulation);
+    simulation.work.stretch_bounds.are_fresh = true;
     simulation.advance_clock(dt, end);
     simulation.commit_history();
     simulation.finished(Phase::Stress);
 
     local.forces(simulation);
     if simulation.time >= end {
-        local.kick(simulation, Kick::Closing, local.durations(0.5 * dt), 0.0);
+        local.kick(simulation, Kick::Closing, 0.5 * dt, 0.0);
         simulation.synchronised = true;
         return Ok(());
     }
     let now = stretch_limits(simulation, &local.groups);
     if local.choice.is_due(simulation.step, &now) {
         simulation.finished(Phase::TimeStep);
-        local.kick(simulation, Kick::Closing, local.durations(0.5 * dt), 0.0);
+        local.kick(simulation, Kick::Closing, 0.5 * dt, 0.0);
         local
             .momentum_before
             .copy_from_slice(&simulation.ledger.momentum_before);
         local.regroup(simulation);
         let next = local.next_time_step(simulation, end)?;
         simulation.finished(Phase::TimeStep);
-        local.fine_force(simulation);
-        local.kick(simulation, Kick::Opening, local.durations(0.5 * next), next);
+        local.fine_force(simulation, 1);
+        local.kick(simulation, Kick::Opening, 0.5 * next, next);
         // Energies are those of the mean of the momenta before and after the kicks of this time.
         simulation
             .ledger
@@ -156,8 +152,7 @@ pub(crate) fn step(
     } else {
         let next = local.choice.next_time_step(simulation, &now, end)?;
         simulation.finished(Phase::TimeStep);
-        let durations = local.durations(0.5 * (dt + next));
-        local.kick(simulation, Kick::Full, durations, next);
+        local.kick(simulation, Kick::Full, 0.5 * (dt + next), next);
         simulation.dt = next;
     }
     Ok(())
@@ -167,7 +162,7 @@ impl LocalSteps {
     /// Forces of all stresses and of the fine ones.
     fn forces(&mut self, simulation: &mut Simulation) {
         force::internal(&simulation.reference, &mut simulation.work);
-        self.fine_force(simulation);
+        self.fine_force(simulation, 1);
         simulation.loads.evaluate(
             &simulation.reference,
             simulation.time,
@@ -176,10 +171,9 @@ impl LocalSteps {
         simulation.finished(Phase::Force);
     }
 
-    /// The kick between two steps, and the constraints for the travel that follows: over `travel`, or
-    /// over a sub-step.
-    fn kick(&self, simulation: &mut Simulation, kick: Kick, duration: Durations, travel: f64) {
-        let sub_step = travel / self.ratio();
+    /// The kick between two steps over `duration`, and the constraints for the travel that follows: over
+    /// `travel`, or over a sub-step.
+    fn kick(&self, simulation: &mut Simulation, kick: Kick, duration: f64, travel: f64) {
         let Simulation {
             reference,
             state,
@@ -190,8 +184,8 @@ impl LocalSteps {
             time,
             ..
         } = simulation;
-        let difference = duration.coarse - duration.fine;
-        for (moving, travel) in [(false, travel), (true, sub_step)] {
+        for level in 0..=self.choice.finest() {
+            let travel = travel * share(level);
             let push = Push {
                 kick,
                 reference,
@@ -202,26 +196,26 @@ impl LocalSteps {
             };
             let force = |a: usize, p: &mut Vec3| {
                 let impulse = Impulse {
-                    external: or_zero(&work.external_force, a) * duration.coarse,
+                    external: or_zero(&work.external_force, a) * duration,
                     ..Impulse::default()
                 };
-                *p += impulse.external - work.internal_force[a] * duration.coarse;
-                if moving {
-                    *p += self.fine_force[a] * difference;
+                *p += impulse.external - work.internal_force[a] * duration;
+                if level > 0 {
+                    *p += self.fine_force[a] * duration;
                 }
                 impulse
             };
-            self.push(moving, push, state, ledger, force);
+            self.push(level, push, state, ledger, force);
         }
         simulation.finished(Phase::Constraint);
     }
 }
 
 impl LocalSteps {
-    /// Applies a push to the particles that move in sub-steps, or to the others.
+    /// Applies a push to the particles that move with a level.
     fn push(
         &self,
-        moving: bool,
+        level: u8,
         push: Push<'_>,
         state: &mut State,
         ledger: &mut Ledger,
@@ -230,14 +224,15 @@ impl LocalSteps {
         let reference = push.reference;
         for (body, groups) in reference.bodies.iter().zip(&self.groups) {
             let first = body.particles.start;
-            for run in groups.moving.runs(0..body.particles.len(), moving) {
+            let particles = 0..body.particles.len();
+            for run in groups.moving.runs(particles, Levels::only(level)) {
                 let run = first + run.start..first + run.end;
                 push.apply(run, state, ledger, &force);
             }
         }
         ledger.add_up_conditions(reference, |a| {
             let (body, a) = reference.owner_of_particle(a);
-            self.groups[body].moving.contains(a) == moving
+            self.groups[body].moving.level(a) == level
         });
     }
 }
@@ -248,7 +243,7 @@ impl Simulation {
     pub fn has_substeps(&self) -> bool {
         self.local
             .as_ref()
-            .is_some_and(|local| local.choice.ratio() > 1)
+            .is_some_and(|local| local.choice.finest() > 0)
     }
 }
 
@@ -278,6 +273,6 @@ impl LocalSteps {
         }
         // Sub-steps rewrite what is fine, and nothing else may be left over.
         self.fine_stress.fill(Mat3::zeros());
-        self.fine_pressure.fill(0.0);
+        self.fine_pressure.iter_mut().for_each(|own| own.fill(0.0));
     }
 }

@@ -5,7 +5,7 @@ use jstsph_tensor::lanes::TILE;
 use jstsph_tensor::{Mat3, Vec3, cofactor, double_dot, tensor_cross};
 
 use crate::lines::LineFields;
-use crate::local_steps::{Groups, Part};
+use crate::local_steps::{Groups, Levels, Part};
 use crate::model::{Formulation, Quadrature};
 use crate::parallel;
 use crate::reference::{BodyReference, Reference};
@@ -118,7 +118,7 @@ pub(crate) fn drift(
 /// are left in the workspace.
 pub(crate) fn drift_part(
     reference: &Reference,
-    (groups, fine): (&[Groups], bool),
+    (groups, level): (&[Groups], u8),
     state: &mut State,
     work: &mut Workspace,
     dt: f64,
@@ -131,7 +131,7 @@ pub(crate) fn drift_part(
     let bodies = reference.bodies.iter().zip(groups);
     for ((body, groups), bounds) in bodies.zip(&mut work.stretch_bounds.bodies) {
         let points = body.points.clone();
-        let rates = if fine {
+        let rates = if level > 0 {
             Rates::Rows(GradientOf::velocity(body, &work.padded_momentum))
         } else {
             Rates::of(body, &work.padded_momentum, &mut work.lines)
@@ -141,7 +141,10 @@ pub(crate) fn drift_part(
             &mut work.volume_change[points],
         );
         parallel::for_each_chunk_of(out, (bounds, TILE), |offset, f, change, bounds| {
-            for run in groups.fine.runs(offset..offset + f.len(), fine) {
+            for run in groups
+                .points
+                .runs(offset..offset + f.len(), Levels::only(level))
+            {
                 let here = run.start - offset..run.end - offset;
                 let tiles = here.start / TILE..here.end.div_ceil(TILE);
                 step.advance(
@@ -159,13 +162,13 @@ pub(crate) fn drift_part(
 /// J of the particles of a part, by the changes of volume of their bonds: `[eq:bond-volume]`.
 pub(crate) fn grow_part(
     reference: &Reference,
-    (groups, fine): (&[Groups], bool),
+    (groups, level): (&[Groups], u8),
     jacobian: &mut [f64],
     volume_change: &[f64],
 ) {
     for (body, groups) in reference.bodies.iter().zip(groups) {
         let change = &volume_change[body.points.clone()];
-        let part = Part { groups, fine };
+        let part = Part { groups, level };
         part.for_each_jacobian(&mut jacobian[body.particles.clone()], |a, jacobian| {
             *jacobian *= body.shares.mean(a, |q| change[q]).exp();
         });

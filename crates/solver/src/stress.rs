@@ -8,14 +8,17 @@ use jstsph_material::{
 };
 use jstsph_tensor::Mat3;
 
-use crate::local_steps::{Groups, Part};
+use crate::local_steps::{Groups, Levels, Part};
 use crate::model::Quadrature;
 use crate::parallel;
 use crate::reference::{BodyReference, Reference};
 use crate::state::{Deformation, State, Workspace};
 use crate::strain::Strains;
 
+mod energy;
 mod tile;
+
+pub(crate) use energy::elastic_energy;
 
 /// What the points of one body see.
 #[derive(Clone, Copy)]
@@ -149,9 +152,11 @@ impl BlockVisitor for Evaluation<'_> {
         let (stress, plastic_work) = (&mut *self.scaled_stress, &mut *self.plastic_work);
         match &self.part {
             None => parallel::for_each_chunk(stress, plastic_work, candidate, of_run),
-            Some(Part { groups, fine }) => {
+            Some(Part { groups, level }) => {
                 let out = (stress, plastic_work, &mut candidate[..]);
-                groups.fine.for_each_chunk(*fine, out, of_run);
+                groups
+                    .points
+                    .for_each_chunk(Levels::only(*level), out, of_run);
             }
         }
         let failed = pass.failed;
@@ -254,7 +259,7 @@ pub(crate) fn evaluate(
 pub(crate) fn evaluate_part(
     (strains, dt): (Strains, f64),
     (reference, state): (&Reference, &State),
-    (groups, fine): (&[Groups], bool),
+    (groups, level): (&[Groups], u8),
     materials: &mut [MaterialBlock],
     (volumetric_stress, scaled_stress): (&mut [f64], &mut [Mat3]),
     plastic_work: &mut [f64],
@@ -263,7 +268,7 @@ pub(crate) fn evaluate_part(
     for (index, ((body, material), groups)) in bodies.enumerate() {
         let evaluation = Evaluation {
             points: points_of(strains, reference, body, state, dt),
-            part: Some(Part { groups, fine }),
+            part: Some(Part { groups, level }),
             volumetric_stress: &mut volumetric_stress[body.particles.clone()],
             scaled_stress: &mut scaled_stress[body.points.clone()],
             plastic_work: &mut plastic_work[body.points.clone()],
@@ -311,57 +316,6 @@ fn points_of<'a>(
         volume: &reference.point_volume[body.points.clone()],
         dt,
     }
-}
-
-/// Elastic energy of one body: Σ V_q Ψ' at its points and Σ V_a U(J) at its particles, J.
-struct ElasticEnergy<'a> {
-    points: Points<'a>,
-    particle_volume: &'a [f64],
-}
-
-impl BlockReader for ElasticEnergy<'_> {
-    type Output = f64;
-    fn visit<M: Material>(&mut self, block: &Block<M>) -> f64 {
-        let points = self.points;
-        let at_points = parallel::sum(points.volume.len(), 0.0, |q| {
-            let now = points.kinematics(q);
-            let mut energy = block.model.point_energy(&now, &block.committed[q]);
-            if points.without_jacobian() {
-                energy += block.model.volumetric_energy(now.jacobian, now.temperature);
-            }
-            points.volume[q] * energy
-        });
-        if points.without_jacobian() {
-            return at_points;
-        }
-        at_points
-            + parallel::sum(self.particle_volume.len(), 0.0, |a| {
-                self.particle_volume[a]
-                    * block
-                        .model
-                        .volumetric_energy(points.jacobian[a], points.temperature[a])
-            })
-    }
-}
-
-/// Elastic energy of all bodies with the committed history, J; with bonds `[eq:bond-energy]`.
-pub(crate) fn elastic_energy(
-    strains: Strains,
-    reference: &Reference,
-    state: &State,
-    materials: &[MaterialBlock],
-) -> f64 {
-    reference
-        .bodies
-        .iter()
-        .zip(materials)
-        .map(|(body, material)| {
-            material.visit_ref(&mut ElasticEnergy {
-                points: points_of(strains, reference, body, state, 0.0),
-                particle_volume: &reference.volume[body.particles.clone()],
-            })
-        })
-        .sum()
 }
 
 /// Reads the equivalent plastic strain of every point from the committed history.

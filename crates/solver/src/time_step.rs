@@ -5,7 +5,7 @@ use std::ops::Range;
 use jstsph_tensor::lanes::TILE;
 use jstsph_tensor::{Mat3, cofactor, double_dot, largest_eigenvalue};
 
-use crate::local_steps::Groups;
+use crate::local_steps::{Groups, Levels};
 use crate::parallel;
 use crate::reference::{BodyReference, Reference};
 use crate::state::{Deformation, State, StretchBounds};
@@ -167,7 +167,7 @@ pub(crate) fn stable_step(
 pub(crate) fn stable_step_of_part(
     reference: &Reference,
     (state, bounds): (&State, &StretchBounds),
-    (groups, fine): (&[Groups], bool),
+    (groups, level): (&[Groups], u8),
 ) -> StableStep {
     let plane = reference.is_plane();
     let none = Steepest {
@@ -177,9 +177,9 @@ pub(crate) fn stable_step_of_part(
     smallest(reference, |index, body| {
         let deformation = state.deformation(body.points.clone());
         let count = body.points.len();
-        let tiles = &groups[index].fine;
+        let tiles = &groups[index].points;
         if let Some(bounds) = bounds.of(index) {
-            let wanted = |tile: usize| tiles.contains(tile * TILE) == fine;
+            let wanted = |tile: usize| tiles.level(tile * TILE) == level;
             return steepest_by_bounds(plane, deformation, bounds, wanted).unwrap_or(none);
         }
         parallel::reduce(
@@ -187,7 +187,7 @@ pub(crate) fn stable_step_of_part(
             &|range| {
                 let points = range.start * TILE..(range.end * TILE).min(count);
                 let mut steepest = none;
-                for run in tiles.runs(points, fine) {
+                for run in tiles.runs(points, Levels::only(level)) {
                     for first in run.clone().step_by(parallel::LEAF) {
                         let piece = first..run.end.min(first + parallel::LEAF);
                         steepest = steeper(steepest, steepest_of(plane, piece, deformation));

@@ -16,6 +16,7 @@ use crate::{
     MaterialError, MieGrueneisen, ParameterError, PlasticHistory, Property, Response, ResponseTile,
     Thermal, WaveSpeeds,
 };
+use jstsph_tensor::lanes::TILE;
 use jstsph_tensor::{Mat3, cofactor, norm_squared};
 use serde::{Deserialize, Serialize};
 
@@ -377,6 +378,15 @@ impl Material for HenckyVonMises {
             &history.inverse_plastic_cauchy_green(),
         );
         self.elastic().shear_modulus(now.temperature) * norm_squared(&deviatoric_hencky_strain(&b))
+    }
+
+    fn point_energies_tile(
+        &self,
+        now: &KinematicsTile,
+        history: &[PlasticHistory],
+        energies: &mut [f64; TILE],
+    ) -> bool {
+        tile::energies(self, now, history, energies)
     }
 
     fn flow_stress(&self, history: &PlasticHistory, rate: f64, temperature: f64) -> Option<f64> {

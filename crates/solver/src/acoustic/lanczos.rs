@@ -21,6 +21,10 @@ pub(super) struct Tridiagonal {
 }
 
 impl Tridiagonal {
+    pub(super) fn size(&self) -> usize {
+        self.size
+    }
+
     pub(super) fn is_full(&self) -> bool {
         self.size == STEPS
     }

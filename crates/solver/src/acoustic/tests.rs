@@ -76,8 +76,7 @@ fn frequencies_follow_the_deformation() {
                 reference,
                 &reference.bodies[0],
                 &scheme,
-                state,
-                None,
+                (state, Vibrations::default(), 0),
             )
         };
         let undeformed = of(None);

@@ -1,8 +1,8 @@
 //! Which points make sub-steps, how many, and how long the step is.
 
-use super::Groups;
+use super::{Groups, LARGEST_LEVEL, Levels, share};
 use crate::SolverError;
-use crate::acoustic::Frequency;
+use crate::acoustic::{CONVERGED, Frequency, Region, Vibrations};
 use crate::model::Scheme;
 use crate::reference::Reference;
 use crate::simulation::Simulation;
@@ -20,55 +20,81 @@ const CHANGE: f64 = 0.15;
 
 /// Work on a fine point in a sub-step over that on another point in a step, roughly: particles around the
 /// fine points sum over all their points.
-const FINE_WORK: f64 = 1.5;
+const FINE_WORK: f64 = 1.3;
 
-/// By how much the limit of the rest must be longer than its step: impulses once a step resonate with
-/// vibrations of the fine parts whose half period is a step. With this margin and a CFL number of 0.9
-/// these are 3.5 times above all frequencies of the rest and hardly reach it. A vibrating Taylor bar
-/// gains energy at 1, in one of four resolutions at 1.6, and in none at 2. docs/theory.md.
+/// By how much the limit of what is coarser than a level must be longer than its step: impulses once a
+/// step resonate with vibrations of the finer parts whose half period is a step. With this margin and a
+/// CFL number of 0.9 these are 3.5 times above all frequencies of the coarser part and hardly reach it.
+/// Vibrating Taylor bars gain energy in four of twelve runs at 1.5, in seven at 1.75, and in none at 2.
+/// docs/theory.md.
 const MARGIN: f64 = 2.0;
 
 /// Most by which a step is shortened because points are being compressed.
 const LARGEST_SHORTENING: f64 = 0.5;
 
-/// Threshold over the smallest time of all, to begin with.
-const FIRST_THRESHOLD: f64 = 1.4;
+/// Factor between thresholds that are tried.
+const STRIDE: f64 = 1.3;
 
-/// Factors on the threshold that are tried in turn.
-const STRIDES: [f64; 4] = [1.3, 1.7, 1.0 / 1.3, 1.0 / 1.7];
+/// Change of ω² in a Lanczos step by which the limits of the rest are known well enough: they have
+/// [`MARGIN`].
+const ROUGHLY: f64 = 0.01;
+
+/// Points with less than this part of the undeformed time are compressed far more than the rest: the
+/// fastest vibrations are among them.
+const SOFT: f64 = 0.5;
+
+/// Part of the largest step of the rest from which on larger groups do not help.
+const SATURATED: f64 = 0.98;
+
+/// Most thresholds that are tried.
+const MOST_THRESHOLDS: usize = 24;
+
+/// Levels, 0 included.
+const LEVELS: usize = LARGEST_LEVEL as usize + 1;
+
+/// A threshold that is tried.
+#[derive(Clone, Copy, Debug)]
+struct Candidate {
+    /// s.
+    threshold: f64,
+    /// Points below it, with their surroundings.
+    points: f64,
+    /// Largest step of the others, s, before the CFL number.
+    rest: f64,
+}
 
 /// What groups are worth.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 struct Outcome {
-    /// Sub-steps of a step.
-    ratio: u32,
-    /// Limit of the sub-step, s.
+    finest: u8,
+    /// Of the levels from 1 on, s; zero beyond the finest.
+    thresholds: [f64; LEVELS],
+    /// Largest step of the finest level, s, before the CFL number.
     limit: f64,
     /// Simulated time per work on a point of equal steps, s.
     speed: f64,
 }
 
-/// The groups in use: points whose time Δx λ_min / c is below a threshold, and their surroundings.
-/// Now and then limits and groups are computed anew, and another threshold is tried.
+/// The levels in use: points whose time Δx λ_min / c is below a threshold, and their surroundings. Now and
+/// then limits and levels are computed anew, from several thresholds.
 #[derive(Clone, Debug)]
 pub(super) struct Choice {
     frequency: Frequency,
     /// What the frequency needs of a workspace: that of the simulation is in use while this one is asked.
     work: Workspace,
-    largest_ratio: u32,
+    largest_level: u8,
     /// Δx λ_min / c of every point, s.
     point_time: Vec<f64>,
+    /// Smallest of the undeformed bodies, s.
+    undeformed_time: f64,
     trial: Vec<Groups>,
-    ratio: u32,
-    /// s; zero before the first choice.
-    threshold: f64,
-    /// Which stride is tried next.
-    turn: usize,
+    regions: Vec<Region>,
+    candidates: Vec<Candidate>,
+    finest: u8,
     /// Limit of the sub-step at the last choice, s.
     limit: f64,
-    /// Smallest times of the fine points and of the others at the last choice, s; infinite when there
-    /// are none.
-    times: [f64; 2],
+    /// Smallest times of the points of the levels at the last choice, s; infinite when there are none.
+    times: [f64; LEVELS],
     /// Smallest time of all points one step ago, s; zero before the first.
     previous: f64,
     /// Step of the last choice.
@@ -80,22 +106,28 @@ impl Choice {
         Self {
             frequency: Frequency::new(reference),
             work: Workspace::of_strains(reference),
-            largest_ratio: scheme.substeps,
+            largest_level: u8::try_from(scheme.substeps.ilog2())
+                .map_or(LARGEST_LEVEL, |level| level.min(LARGEST_LEVEL)),
             point_time: vec![0.0; reference.point_volume.len()],
+            undeformed_time: reference
+                .bodies
+                .iter()
+                .map(|body| body.spacing / body.wave_speed)
+                .fold(f64::INFINITY, f64::min),
             trial: reference.bodies.iter().map(Groups::new).collect(),
-            ratio: 1,
-            threshold: 0.0,
-            turn: 0,
+            regions: reference.bodies.iter().map(Region::new).collect(),
+            candidates: Vec::with_capacity(MOST_THRESHOLDS),
+            finest: 0,
             limit: 0.0,
-            times: [f64::INFINITY; 2],
+            times: [f64::INFINITY; LEVELS],
             previous: 0.0,
             step: 0,
         }
     }
 
-    /// Sub-steps of a step.
-    pub(super) fn ratio(&self) -> u32 {
-        self.ratio
+    /// The finest level in use.
+    pub(super) fn finest(&self) -> u8 {
+        self.finest
     }
 
     /// Whether the groups are to be chosen again.
@@ -109,7 +141,7 @@ impl Choice {
     }
 
     /// Chooses the groups for the present state.
-    pub(super) fn renew(&mut self, simulation: &Simulation, groups: &mut Vec<Groups>) {
+    pub(super) fn renew(&mut self, simulation: &Simulation, groups: &mut [Groups]) {
         let Simulation {
             reference, state, ..
         } = simulation;
@@ -118,62 +150,105 @@ impl Choice {
                 self.point_time[q] = point_time(body, &state.deformation_gradient[q]);
             }
         }
-        let smallest = self.point_time.iter().fold(f64::INFINITY, |a, b| a.min(*b));
-        let limit = self.limit_of(simulation, None);
-        let threshold = if self.ratio == 1 {
-            smallest * FIRST_THRESHOLD
-        } else {
-            self.threshold
-        };
-        let other = threshold * STRIDES[self.turn];
-        let fine = self.group(simulation, groups, threshold);
-        let rest = if self.best(fine, limit, f64::INFINITY).ratio > 1 {
-            self.limit_of(simulation, Some(groups)) / MARGIN
-        } else {
-            // Nothing to be gained whatever the rest allows.
-            0.0
-        };
-        let mut outcome = self.best(fine, limit, rest);
-        self.threshold = threshold;
-        let mut trial = std::mem::take(&mut self.trial);
-        let others = self.group(simulation, &mut trial, other);
-        // With more of the body the rest cannot have a longer step.
-        let bound = if other < threshold && rest > 0.0 {
-            rest
-        } else {
-            f64::INFINITY
-        };
-        self.turn = (self.turn + 1) % STRIDES.len();
-        if others != fine && self.best(others, limit, bound).speed > outcome.speed {
-            let rest = self.limit_of(simulation, Some(&trial)) / MARGIN;
-            let tried = self.best(others, limit, rest);
-            if tried.speed > outcome.speed {
-                (self.threshold, outcome) = (other, tried);
-                std::mem::swap(groups, &mut trial);
-            }
+        let limit = self.survey(simulation);
+        let outcome = self.best(limit);
+        let thresholds = &outcome.thresholds[..usize::from(outcome.finest)];
+        for (body, groups) in reference.bodies.iter().zip(&mut *groups) {
+            let time = &self.point_time[body.points.clone()];
+            groups.choose(body, |q| {
+                thresholds
+                    .iter()
+                    .map(|threshold| u8::from(time[q] < *threshold))
+                    .sum()
+            });
         }
-        self.trial = trial;
-        if outcome.ratio == 1 {
-            for (body, groups) in reference.bodies.iter().zip(&mut *groups) {
-                groups.choose(body, |_| false);
-            }
-        }
-        self.ratio = outcome.ratio;
+        self.finest = outcome.finest;
         self.limit = outcome.limit;
         self.times = stretch_limits(simulation, groups).map(|step| step.time);
         self.step = simulation.step + 1;
     }
 
-    /// 2/ω_max of the bodies, or of what is not fine in them, s.
-    fn limit_of(&mut self, simulation: &Simulation, without_fine: Option<&[Groups]>) -> f64 {
+    /// Finds what several thresholds would allow, and returns 2/ω_max of the bodies, s.
+    ///
+    /// The fastest vibrations of what is compressed stay there: they are looked for in its
+    /// surroundings only.
+    pub(super) fn survey(&mut self, simulation: &Simulation) -> f64 {
+        let smallest = self.point_time.iter().fold(f64::INFINITY, |a, b| a.min(*b));
+        self.candidates.clear();
+        let all = self.point_time.len();
+        let mut trial = std::mem::take(&mut self.trial);
+        let mut widest = (SOFT * self.undeformed_time).max(smallest * STRIDE * STRIDE);
+        let mut most = self.group(simulation, &mut trial, widest);
+        while 2 * most > all && widest > smallest {
+            widest /= STRIDE;
+            most = self.group(simulation, &mut trial, widest);
+        }
+        let mut regions = std::mem::take(&mut self.regions);
+        let bodies = simulation.reference.bodies.iter();
+        for ((body, groups), region) in bodies.zip(&trial).zip(&mut regions) {
+            region.around(body, groups);
+        }
+        let inside = self.limit_of(simulation, None, (Some(&regions), CONVERGED));
+        let mut rest = f64::INFINITY;
+        if self.finest > 0 {
+            rest = self.limit_of(simulation, Some(&trial), (None, ROUGHLY));
+        }
+        if self.finest == 0 || rest < MARGIN * inside {
+            // It may be the limit of all.
+            rest = self.limit_of(simulation, Some(&trial), (None, CONVERGED));
+        }
+        let limit = rest.min(inside);
+        let mut last = 0;
+        let mut threshold = smallest * STRIDE;
+        while rest > MARGIN * limit
+            && threshold < widest
+            && self.candidates.len() + 1 < MOST_THRESHOLDS
+        {
+            let fine = self.group(simulation, &mut trial, threshold);
+            if fine > last && fine < most {
+                let own = self.limit_of(simulation, Some(&trial), (Some(&regions), ROUGHLY));
+                self.candidates.push(Candidate {
+                    threshold,
+                    points: fine as f64,
+                    rest: rest.min(own) / MARGIN,
+                });
+                if own > SATURATED * rest {
+                    break;
+                }
+                last = fine;
+            }
+            threshold *= STRIDE;
+        }
+        self.candidates.push(Candidate {
+            threshold: widest,
+            points: most as f64,
+            rest: rest / MARGIN,
+        });
+        self.trial = trial;
+        self.regions = regions;
+        limit
+    }
+
+    /// 2/ω_max of the bodies, or of some of their vibrations, s.
+    fn limit_of(
+        &mut self,
+        simulation: &Simulation,
+        without: Option<&[Groups]>,
+        (region, tolerance): (Option<&[Region]>, f64),
+    ) -> f64 {
         let Simulation {
             reference,
             state,
             scheme,
             ..
         } = simulation;
+        let vibrations = Vibrations {
+            without,
+            region,
+            tolerance,
+        };
         self.frequency
-            .limit(&mut self.work, reference, scheme, state, without_fine)
+            .limit(&mut self.work, reference, scheme, state, vibrations)
     }
 
     /// Makes the groups of a threshold and returns the number of fine points.
@@ -181,34 +256,53 @@ impl Choice {
         let mut fine = 0;
         for (body, groups) in simulation.reference.bodies.iter().zip(groups) {
             let time = &self.point_time[body.points.clone()];
-            groups.choose(body, |q| time[q] < threshold);
-            fine += groups.fine.count();
+            groups.choose(body, |q| u8::from(time[q] < threshold));
+            fine += groups.points.count(Levels::from(1));
         }
         fine
     }
 
-    /// The best ratio for that many fine points, where `limit` is that of the whole bodies and `rest`
-    /// that of the others. `[eq:local-limit]`
-    fn best(&self, fine: usize, limit: f64, rest: f64) -> Outcome {
-        let (points, fine) = (self.point_time.len() as f64, fine as f64);
+    /// The best levels of those that the candidates make, where `limit` is the largest step of the whole
+    /// bodies. `[eq:local-limit]`
+    fn best(&self, limit: f64) -> Outcome {
+        let points = self.point_time.len() as f64;
         let mut best = Outcome {
-            ratio: 1,
+            finest: 0,
+            thresholds: [0.0; LEVELS],
             limit,
             speed: limit / points,
         };
-        let mut ratio = 2;
-        while ratio <= self.largest_ratio {
-            let limit = limit.min(rest / f64::from(ratio));
-            let work = (points - fine) / f64::from(ratio) + FINE_WORK * fine;
-            let speed = limit / work;
-            if speed > best.speed {
-                best = Outcome {
-                    ratio,
-                    limit,
-                    speed,
-                };
+        for (k, outermost) in self.candidates.iter().enumerate() {
+            for finest in 1..=self.largest_level {
+                let step = outermost.rest.min(limit / share(finest));
+                let mut thresholds = [0.0; LEVELS];
+                let mut work = points - outermost.points;
+                // The level that is looked at, with what is finer.
+                let mut around = *outermost;
+                for level in 1..=finest {
+                    thresholds[usize::from(level) - 1] = around.threshold;
+                    let inner = if level == finest {
+                        None
+                    } else {
+                        let own = step * share(level);
+                        self.candidates[..=k].iter().find(|inner| inner.rest >= own)
+                    };
+                    let finer = inner.map_or(0.0, |inner| inner.points.min(around.points));
+                    work += FINE_WORK * (around.points - finer) / share(level);
+                    if let Some(inner) = inner.filter(|inner| inner.points < around.points) {
+                        around = *inner;
+                    }
+                }
+                let speed = step / work;
+                if speed > best.speed {
+                    best = Outcome {
+                        finest,
+                        thresholds,
+                        limit: step * share(finest),
+                        speed,
+                    };
+                }
             }
-            ratio *= 2;
         }
         best
     }
@@ -229,8 +323,9 @@ impl Choice {
                 change = change.min(now.time / then);
             }
         }
-        let [fine, rest] = *now;
-        let stable = if fine.time < rest.time { fine } else { rest };
+        let stable = now
+            .iter()
+            .fold(now[0], |a, b| if b.time < a.time { *b } else { a });
         // The last sub-step of the step that follows sees what one step more has compressed.
         if self.previous > 0.0 {
             change *= (stable.time / self.previous).clamp(LARGEST_SHORTENING, 1.0);
@@ -238,22 +333,21 @@ impl Choice {
         self.previous = stable.time;
         let sub_step = simulation.scheme.cfl * self.limit * change;
         simulation.check_time_step(sub_step, &stable)?;
-        Ok(simulation.cut_at(end, sub_step * f64::from(self.ratio)))
+        Ok(simulation.cut_at(end, sub_step / share(self.finest)))
     }
 
     /// What a restart needs.
     #[expect(clippy::cast_precision_loss, reason = "no run makes 2^53 steps")]
-    pub(super) fn saved(&self) -> [f64; 8] {
-        [
-            f64::from(self.ratio),
-            self.threshold,
-            self.turn as f64,
+    pub(super) fn saved(&self) -> [f64; 4 + LEVELS] {
+        let mut saved = [0.0; 4 + LEVELS];
+        saved[..4].copy_from_slice(&[
+            f64::from(self.finest),
             self.limit,
-            self.times[0],
-            self.times[1],
             self.step as f64,
             self.previous,
-        ]
+        ]);
+        saved[4..].copy_from_slice(&self.times);
+        saved
     }
 
     #[expect(
@@ -262,21 +356,25 @@ impl Choice {
         reason = "written by `saved`"
     )]
     pub(super) fn restore(&mut self, saved: &[f64]) {
-        self.ratio = saved[0] as u32;
-        self.threshold = saved[1];
-        self.turn = saved[2] as usize % STRIDES.len();
-        self.limit = saved[3];
-        self.times = [saved[4], saved[5]];
-        self.step = saved[6] as u64;
-        self.previous = saved[7];
+        self.finest = (saved[0] as u8).min(self.largest_level);
+        self.limit = saved[1];
+        self.step = saved[2] as u64;
+        self.previous = saved[3];
+        self.times.copy_from_slice(&saved[4..]);
     }
 }
 
-/// Limits by stretch of the fine points and of the others.
-pub(super) type StretchLimits = [StableStep; 2];
+/// Limits by stretch of the points of the levels.
+pub(super) type StretchLimits = [StableStep; LEVELS];
 
 /// The limits by stretch at the present state.
 pub(super) fn stretch_limits(simulation: &Simulation, groups: &[Groups]) -> StretchLimits {
+    let reference = &simulation.reference;
     let state = (&simulation.state, &simulation.work.stretch_bounds);
-    [true, false].map(|fine| stable_step_of_part(&simulation.reference, state, (groups, fine)))
+    let mut level = 0;
+    [(); LEVELS].map(|()| {
+        let step = stable_step_of_part(reference, state, (groups, level));
+        level += 1;
+        step
+    })
 }

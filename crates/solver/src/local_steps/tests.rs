@@ -1,8 +1,10 @@
 use super::*;
+use crate::acoustic::{Frequency, Vibrations};
 use crate::constraint;
 use crate::model::{
     Condition, ConditionKind, Integrator, Model, ModelObstacle, Quadrature, Signal, StepLimit,
 };
+use crate::state::Workspace;
 use crate::testing::{copper, in_pool, model, scheme};
 use jstsph_contact::{Friction, Law, Obstacle, Surface};
 
@@ -40,13 +42,16 @@ fn run(simulation: &mut Simulation, end: f64) {
 }
 
 fn ratio(simulation: &Simulation) -> u32 {
-    simulation.local.as_ref().unwrap().choice.ratio()
+    1 << simulation.local.as_ref().unwrap().choice.finest()
 }
 
 /// Points that make sub-steps now.
 fn fine_points(simulation: &Simulation) -> usize {
     let groups = &simulation.local.as_ref().unwrap().groups;
-    groups.iter().map(|groups| groups.fine.count()).sum()
+    groups
+        .iter()
+        .map(|groups| groups.points.count(Levels::from(1)))
+        .sum()
 }
 
 fn assert_grouped(simulation: &Simulation) {
@@ -272,12 +277,31 @@ fn fine_and_slow_stresses_add_up() {
     local.split_stress(&simulation);
     let size = stress.iter().map(Mat3::norm).fold(0.0, f64::max);
     let mut mixed = 0;
+    let groups = &local.groups[0];
     for (q, (one, other)) in stress.iter().zip(&local.fine_stress).enumerate() {
         assert!((one - other).norm() < 1e-13 * size, "point {q}");
-        mixed += usize::from(*one != simulation.work.scaled_stress[q] && *one != Mat3::zeros());
+        let pure = simulation.work.scaled_stress[q] * (1.0 - share(groups.points.level(q)));
+        mixed += usize::from((one - pure).norm() > 1e-3 * size);
     }
     assert!(mixed > 0);
     assert_eq!(pressure, local.fine_pressure);
+}
+
+#[test]
+fn the_fastest_vibration_is_found_in_its_surroundings() {
+    let mut simulation = Simulation::new(collision([4, 25, 4], 8)).unwrap();
+    run(&mut simulation, 15e-6);
+    assert_grouped(&simulation);
+    let mut local = simulation.local.take().unwrap();
+    local.regroup(&simulation);
+    let found = local.choice.survey(&simulation);
+    let reference = simulation.reference();
+    let mut work = Workspace::of_strains(reference);
+    let (scheme, state) = (simulation.scheme(), simulation.state());
+    let all = Vibrations::default();
+    let limit = Frequency::new(reference).limit(&mut work, reference, scheme, state, all);
+    // The vibration decays within its surroundings, which are whole tiles.
+    assert!((found / limit - 1.0).abs() < 1e-2, "{found} {limit}");
 }
 
 #[test]
@@ -285,33 +309,34 @@ fn runs_of_tiles_are_their_items() {
     let simulation = Simulation::new(collision([4, 25, 4], 8)).unwrap();
     let body = &simulation.reference().bodies[0];
     let mut groups = Groups::new(body);
-    let critical = |q: usize| q == 70 || (300..310).contains(&q);
-    groups.choose(body, critical);
+    let asked = |q: usize| match q {
+        70 => 1,
+        305 => 3,
+        300..310 => 2,
+        _ => 0,
+    };
+    groups.choose(body, asked);
     let all = 0..body.points.len();
-    let (mut inside, mut outside) = (0, 0);
-    for run in groups.fine.runs(all.clone(), true) {
-        assert!(run.clone().all(|q| groups.fine.contains(q)));
-        inside += run.len();
+    let mut items = 0;
+    for level in 0..=LARGEST_LEVEL {
+        let own = Levels::only(level);
+        for run in groups.points.runs(all.clone(), own) {
+            assert!(run.clone().all(|q| groups.points.level(q) == level));
+            items += run.len();
+        }
+        assert_eq!(groups.points.count(own) > 0, level < 4, "{level}");
     }
-    for run in groups.fine.runs(all.clone(), false) {
-        assert!(!run.clone().any(|q| groups.fine.contains(q)));
-        outside += run.len();
+    assert_eq!(items, all.len());
+    for q in all {
+        // All points of its ends have its level at least, and their J.
+        let of_ends = body.ends[q].map(|a| groups.jacobian[a as usize]);
+        assert!(of_ends.iter().all(|level| *level >= asked(q)));
     }
-    assert_eq!(inside, groups.fine.count());
-    assert_eq!(inside + outside, all.len());
-    for q in all.filter(|q| critical(*q)) {
-        // All points of its ends are fine, and their J.
-        assert!(
-            body.ends[q]
-                .iter()
-                .all(|a| groups.fine_jacobian[*a as usize])
-        );
-    }
-    for (a, fine) in groups.fine_jacobian.iter().enumerate() {
+    for (a, level) in groups.jacobian.iter().enumerate() {
         let (points, _) = body.shares.of(a);
-        let all_fine = points.iter().all(|q| groups.fine.contains(*q as usize));
-        assert_eq!(*fine, all_fine);
-        assert!(!fine || groups.moving.contains(a));
+        let levels = points.iter().map(|q| groups.points.level(*q as usize));
+        assert_eq!(Some(*level), levels.min());
+        assert!(groups.moving.level(a) >= *level);
     }
 }
 
@@ -348,4 +373,37 @@ fn what_local_steps_cannot_do_is_refused() {
         let message = refused(change);
         assert!(message.contains(needed), "{message}");
     }
+}
+
+/// The impact of neighbouring layers drives a shock of a spacing's width through the boundaries between
+/// levels.
+#[test]
+fn a_shock_through_levels_keeps_its_energy_and_tangles_nothing() {
+    let run = |substeps: u32| {
+        let mut simulation = Simulation::new(collision([4, 25, 4], substeps)).unwrap();
+        let (mut smallest, mut finest) = (f64::INFINITY, 1);
+        while simulation.time() < 20e-6 {
+            simulation.advance_step(20e-6).unwrap();
+            let state = simulation.state();
+            for f in &state.deformation_gradient {
+                smallest = smallest.min(crate::time_step::smallest_stretch(f));
+                assert!(f.determinant() > 0.0);
+            }
+            if substeps > 1 {
+                finest = finest.max(ratio(&simulation));
+            }
+        }
+        (finest, smallest, simulation.energies())
+    };
+    let (equal, local) = (run(1), run(8));
+    assert!(local.0 > 1);
+    // 0.076 and 0.052: layers of a spacing are pressed into one another, but no bond turns over.
+    assert!(local.1 > 0.5 * equal.1);
+    // A shock of a spacing's width has its own error, 0.042 with equal steps and 0.038 here.
+    let (one, other) = (equal.2, local.2);
+    assert!(
+        other.balance().abs() < one.balance().abs() + 0.01,
+        "{other:?}"
+    );
+    assert!((other.plastic / one.plastic - 1.0).abs() < 0.01);
 }

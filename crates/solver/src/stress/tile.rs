@@ -130,7 +130,7 @@ impl<M: Material> PointPass<'_, M> {
     }
 }
 
-fn read(tile: &mut TensorTile, tensors: &[Mat3], plane: bool) {
+pub(super) fn read(tile: &mut TensorTile, tensors: &[Mat3], plane: bool) {
     if plane {
         tile.read_plane(tensors);
     } else {

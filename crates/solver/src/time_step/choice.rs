@@ -2,7 +2,7 @@
 
 use super::{StableStep, stable_step};
 use crate::SolverError;
-use crate::acoustic::Frequency;
+use crate::acoustic::{Frequency, Vibrations};
 use crate::model::{Integrator, Scheme, StepLimit};
 use crate::reference::Reference;
 use crate::simulation::Simulation;
@@ -56,7 +56,10 @@ impl AcousticLimit {
         let age = step - self.step;
         let changed = (time - self.time).abs() > CHANGE * self.time;
         if self.gain == 0.0 || age >= LATEST || (changed && age >= EARLIEST) {
-            self.gain = self.frequency.limit(work, reference, scheme, state, None) / time;
+            self.gain = self
+                .frequency
+                .limit(work, reference, scheme, state, Vibrations::default())
+                / time;
             self.time = time;
             self.step = step;
         }

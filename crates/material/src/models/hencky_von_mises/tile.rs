@@ -4,7 +4,7 @@ use super::HenckyVonMises;
 use super::flow::Flow;
 use super::series::series;
 use crate::logarithmic_strain::{
-    LONG_EXPONENTIAL, LONG_LOGARITHM, SHORT_EXPONENTIAL, SHORT_LOGARITHM,
+    LONG_EXPONENTIAL, LONG_LOGARITHM, SERIES_LIMIT, SHORT_EXPONENTIAL, SHORT_LOGARITHM,
 };
 use crate::{KinematicsTile, PlasticHistory, ResponseTile};
 use jstsph_tensor::lanes::{
@@ -25,21 +25,9 @@ pub(super) fn respond(
         return false;
     }
     let shear_modulus = model.elastic().shear_moduli(&now.temperature);
-
     let mut inverse_plastic = [[0.0; TILE]; 6];
-    for (i, history) in old.iter().enumerate() {
-        for (tile, component) in inverse_plastic.iter_mut().zip(history.components()) {
-            tile[i] = *component;
-        }
-    }
     let mut trial = Trial::ZERO;
-    vectorised(TrialStress {
-        plane: now.plane,
-        shear_modulus: &shear_modulus,
-        deformation_gradient: &now.deformation_gradient,
-        inverse_plastic: &inverse_plastic,
-        trial: &mut trial,
-    });
+    trial.evaluate(&shear_modulus, now, old, &mut inverse_plastic);
     let Some(flow) = Flow::of(model, &shear_modulus, now, old, &trial) else {
         return false;
     };
@@ -77,6 +65,25 @@ pub(super) fn respond(
     true
 }
 
+/// See [`Material::point_energies_tile`](crate::Material::point_energies_tile): μ |dev ε_e|², with what
+/// the trial stress of the next step is, τ_eq²/(6 μ).
+pub(super) fn energies(
+    model: &HenckyVonMises,
+    now: &KinematicsTile,
+    history: &[PlasticHistory],
+    energies: &mut [f64; TILE],
+) -> bool {
+    let shear_modulus = model.elastic().shear_moduli(&now.temperature);
+    let mut trial = Trial::ZERO;
+    trial.evaluate(&shear_modulus, now, &history[..TILE], &mut [[0.0; TILE]; 6]);
+    let stresses = trial.equivalent_stress.iter().zip(&shear_modulus);
+    for (energy, (stress, shear_modulus)) in energies.iter_mut().zip(stresses) {
+        *energy = stress * stress / (6.0 * shear_modulus);
+    }
+    let mut points = trial.determinant.iter().zip(&trial.distortion);
+    points.all(|(determinant, distortion)| *determinant > 0.0 && *distortion < SERIES_LIMIT)
+}
+
 #[inline(always)]
 fn components_of(tile: &SymmetricTile, i: usize) -> [f64; 6] {
     let mut components = [0.0; 6];
@@ -105,6 +112,31 @@ impl Trial {
         stress: [[0.0; TILE]; 6],
         equivalent_stress: [0.0; TILE],
     };
+}
+
+impl Trial {
+    /// The trial of points with these histories, whose C_p⁻¹ are left in `inverse_plastic`.
+    #[inline(always)]
+    fn evaluate(
+        &mut self,
+        shear_modulus: &[f64; TILE],
+        now: &KinematicsTile,
+        old: &[PlasticHistory],
+        inverse_plastic: &mut SymmetricTile,
+    ) {
+        for (i, history) in old.iter().enumerate() {
+            for (tile, component) in inverse_plastic.iter_mut().zip(history.components()) {
+                tile[i] = *component;
+            }
+        }
+        vectorised(TrialStress {
+            plane: now.plane,
+            shear_modulus,
+            deformation_gradient: &now.deformation_gradient,
+            inverse_plastic,
+            trial: self,
+        });
+    }
 }
 
 struct TrialStress<'a> {
@@ -277,11 +309,14 @@ mod tests {
             for size in [1e-5, 1e-3, 1e-2, 4e-2] {
                 let (now, old) = points(model, plane, size);
                 let (mut new, mut response) = (old.clone(), ResponseTile::ZERO);
-                if !model.respond_tile(&tile_of(&now, plane), &old, &mut new, &mut response) {
+                let tile = tile_of(&now, plane);
+                if !model.respond_tile(&tile, &old, &mut new, &mut response) {
                     // The series of the logarithm and the exponential do not reach further.
                     assert!(size > 1e-2, "{model:?} declines at {size}");
                     continue;
                 }
+                let mut energies = [0.0; TILE];
+                assert!(model.point_energies_tile(&tile, &new, &mut energies));
                 for i in 0..TILE {
                     let one = model.respond(&now[i], &old[i]).unwrap();
                     assert_eq!(new[i], one.history, "{model:?}, point {i}");
@@ -290,6 +325,9 @@ mod tests {
                     let expected = [t.m11, t.m22, t.m33, t.m12, t.m13, t.m23];
                     let found = response.kirchhoff_stress.each_ref().map(|tile| tile[i]);
                     assert_eq!(found, expected, "{model:?}, point {i}");
+                    let energy = model.point_energy(&now[i], &new[i]);
+                    // Strains of 1e-3 by F C_p⁻¹ Fᵀ of the order of 1: 1e-13 of them.
+                    assert!((energies[i] - energy).abs() < 1e-12 * energy + 1e-6, "point {i}");
                 }
             }
         }
@@ -310,7 +348,11 @@ mod tests {
         for spoil in spoilt {
             let mut now = now.clone();
             spoil(&mut now[17]);
-            assert!(!model.respond_tile(&tile_of(&now, false), &old, &mut new, &mut response));
+            let tile = tile_of(&now, false);
+            assert!(!model.respond_tile(&tile, &old, &mut new, &mut response));
+            // Energies do not read J.
+            let sound = now[17].deformation_gradient.determinant() > 0.0;
+            assert_eq!(model.point_energies_tile(&tile, &old, &mut [0.0; TILE]), sound);
         }
     }
 
