@@ -12,10 +12,11 @@ use crate::SolverError;
 use crate::boundary;
 use crate::model::{Laplacian, Model, ModelBody, Quadrature, Scheme, SmoothingReference, Weights};
 
-/// Most points of a body whose gradients and forces go along lines: fields that are brought into lines
-/// and back must stay in the caches. Measured (docs/performance.md): 21 % less time for a step with 11,000
-/// points, 13 % with 47,000, 3 % with 91,000, and 7 % more with 374,000.
-const POINTS_IN_LINES: usize = 100_000;
+/// Most bonds of a body whose gradients and forces go along lines: fields that are brought into lines
+/// and back must stay in the caches. Measured (docs/decisions/lines-beside-rows.md): 21 % less time for a
+/// step with 11,000 bonds, 13 % with 47,000, 3 % with 91,000, and 7 % more with 374,000. Sums over three
+/// times as many neighbours, of stresses at particles, are worth it for any body.
+const BONDS_IN_LINES: usize = 100_000;
 
 /// Particles, points and operators of all bodies in the undeformed state.
 #[derive(Clone, Debug)]
@@ -253,7 +254,8 @@ impl Reference {
         } else {
             (gradient, None)
         };
-        let lines = (gradient.points() <= POINTS_IN_LINES)
+        let few = gradient.points() <= BONDS_IN_LINES;
+        let lines = (few || scheme.quadrature == Quadrature::Particles)
             .then(|| {
                 let midpoints = match scheme.quadrature {
                     Quadrature::Particles => None,

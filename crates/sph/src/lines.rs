@@ -1,6 +1,7 @@
 //! B and its transpose for many points or particles at once: eight parts of every line of particles side
 //! by side, so that the values which eight equal stencils need stand next to each other.
 
+use std::cmp::Reverse;
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -122,8 +123,8 @@ impl LineOperator {
     /// In place of a slot: the item has no sum in the lines.
     pub const ALONE: u32 = u32::MAX;
 
-    /// The operator between particles at `positions` and points at `points`, along the axis where it is
-    /// cheapest; nothing where no axis is worth it. `spacing` is the distance of neighbours.
+    /// The operator between particles at `positions` and points at `points`, along the axis with the longest
+    /// lines that is worth it; nothing where none is. `spacing` is the distance of neighbours.
     ///
     /// # Panics
     /// If there are not as many positions as particles or points.
@@ -137,13 +138,15 @@ impl LineOperator {
         assert_eq!(positions.len(), operator.particles(), "one position each");
         assert_eq!(points.len(), operator.points(), "one position each");
         let items = (positions.len() + points.len()) as f64;
-        (0..if operator.plane { 2 } else { 3 })
+        let axes = 0..if operator.plane { 2 } else { 3 };
+        let mut levels: Vec<Levels> = axes
             .filter_map(|axis| Levels::new(positions, spacing, axis))
-            .filter_map(|levels| Self::along(operator, levels, [positions, points], spacing))
-            .map(|lines| (lines.points.cost() + lines.particles.cost(), lines))
-            .filter(|(cost, _)| *cost < WORTHWHILE * items)
-            .min_by(|(a, _), (b, _)| a.total_cmp(b))
-            .map(|(_, lines)| lines)
+            .collect();
+        levels.sort_by_key(|levels| Reverse(levels.count));
+        levels.into_iter().find_map(|levels| {
+            Self::along(operator, levels, [positions, points], spacing)
+                .filter(|lines| lines.points.cost() + lines.particles.cost() < WORTHWHILE * items)
+        })
     }
 
     fn along(
