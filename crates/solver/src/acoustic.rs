@@ -327,10 +327,7 @@ impl Frequency {
         match moving {
             None => force::divergences(body, tensor, &divisor, &mut work.lines, image),
             Some(tiles) => tiles.for_each_run(Levels::from(1), image, |first, image| {
-                body.gradient.divergences(first, tensor, image);
-                for (k, image) in image.iter_mut().enumerate() {
-                    *image /= divisor(first + k);
-                }
+                force::divergences_of_run(body, first, tensor, &divisor, image);
             }),
         }
     }

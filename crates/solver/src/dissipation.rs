@@ -6,7 +6,7 @@ use jstsph_tensor::Vec3;
 use crate::model::{Biharmonic, Jst, Quadrature, Stabilisation};
 use crate::reference::Reference;
 use crate::state::{State, Workspace};
-use crate::{parallel, viscosity};
+use crate::{parallel, strain, viscosity};
 
 impl Biharmonic {
     /// κ⁽⁴⁾ at an equivalent plastic strain, (4.2).
@@ -133,9 +133,7 @@ fn add_upwind(upwind: f64, reference: &Reference, state: &State, work: &mut Work
         let momentum = &state.momentum[range.clone()];
         // Others have used the buffer since the velocity gradient was computed.
         let padded = &mut work.padded_momentum[range.clone()];
-        parallel::fill(padded, |a| {
-            [momentum[a].x, momentum[a].y, momentum[a].z, 0.0]
-        });
+        parallel::fill(padded, |a| strain::padded(&momentum[a]));
         let padded = &*padded;
         let factors = [upwind * body.wave_speed * body.spacing, body.density];
         parallel::for_each_run(&mut work.dissipation[range], |offset, dissipation| {

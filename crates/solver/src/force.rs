@@ -32,12 +32,23 @@ pub(crate) fn divergences(
         fields.divergences((body, lines), tensors, divisor, out);
         return;
     }
-    parallel::for_each_run(out, |offset, out| {
-        body.gradient.divergences(offset, tensors, out);
-        for (k, out) in out.iter_mut().enumerate() {
-            *out /= divisor(offset + k);
-        }
+    parallel::for_each_run(out, |first, out| {
+        divergences_of_run(body, first, tensors, divisor, out);
     });
+}
+
+/// The same for a run of particles from `first` on, row by row.
+pub(crate) fn divergences_of_run(
+    body: &BodyReference,
+    first: usize,
+    tensors: &[Mat3],
+    divisor: &impl Fn(usize) -> f64,
+    out: &mut [Vec3],
+) {
+    body.gradient.divergences(first, tensors, out);
+    for (k, out) in out.iter_mut().enumerate() {
+        *out /= divisor(first + k);
+    }
 }
 
 /// Averages G and F of the bonds to the particles, for the pair stabilisations.

@@ -40,7 +40,9 @@ pub(crate) fn step(simulation: &mut Simulation, end: f64) -> Result<(), SolverEr
     if simulation.synchronised {
         simulation.dt = simulation.next_time_step(end)?;
         simulation.finished(Phase::TimeStep);
-        simulation.keep_velocity_gradient();
+        if simulation.keeps_velocity_gradient() {
+            simulation.velocity_gradient();
+        }
         simulation.finished(Phase::Gradient);
         simulation.forces(|state, a| state.position[a]);
         simulation.kick(Kick::Opening, 0.5 * simulation.dt, simulation.dt);
@@ -51,7 +53,9 @@ pub(crate) fn step(simulation: &mut Simulation, end: f64) -> Result<(), SolverEr
     let dt = simulation.dt.min(end - simulation.time);
     simulation.move_particles(dt);
     simulation.finished(Phase::Strain);
-    simulation.keep_velocity_gradient();
+    if simulation.keeps_velocity_gradient() {
+        simulation.gradient_of_padded_momenta();
+    }
     simulation.finished(Phase::Gradient);
     simulation.drift_strains(dt);
     simulation.finished(Phase::Strain);

@@ -68,10 +68,10 @@ pub(crate) fn step(
     let last = method.stages.len() - 1;
     let mut begin = 0.0;
     for (i, rule) in method.stages.iter().enumerate() {
-        if simulation.scheme.formulation != Formulation::Displacement {
+        if simulation.scheme.formulation != Formulation::Displacement
+            || simulation.keeps_velocity_gradient()
+        {
             simulation.velocity_gradient();
-        } else {
-            simulation.keep_velocity_gradient();
         }
         simulation.finished(Phase::Gradient);
         simulation.time = time + begin * dt;

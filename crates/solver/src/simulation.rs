@@ -99,9 +99,7 @@ impl Simulation {
         let mut ledger = Ledger::new(&reference, momentum, constraints, has_impulses);
         let loads = Loads::new(&model);
         let keeps_rates = model.scheme.integrator != Integrator::Leapfrog
-            || model.scheme.formulation == Formulation::EulerianKernel
-            || model.scheme.stabilisation.upwind != 0.0
-            || model.scheme.stabilisation.hourglass != 0.0;
+            || strain::keeps_velocity_gradient(&model.scheme);
         let mut work = Workspace::new(&reference, keeps_rates);
         if !loads.is_empty() {
             work.external_force = vec![Vec3::zeros(); particles];
@@ -244,26 +242,23 @@ impl Simulation {
         }
     }
 
-    /// Whether something beside the drift of the leapfrog asks for G, or knows it already.
+    /// Whether G is kept; the drift of the leapfrog works it out for itself elsewhere.
     pub(crate) fn keeps_velocity_gradient(&self) -> bool {
-        let stabilisation = &self.scheme.stabilisation;
-        self.eulerian.is_some() || stabilisation.upwind != 0.0 || stabilisation.hourglass != 0.0
-    }
-
-    /// G of the present momenta where it is kept; the drift works it out for itself elsewhere.
-    pub(crate) fn keep_velocity_gradient(&mut self) {
-        if self.keeps_velocity_gradient() {
-            self.velocity_gradient();
-        }
+        strain::keeps_velocity_gradient(&self.scheme)
     }
 
     /// G of the present momenta.
     pub(crate) fn velocity_gradient(&mut self) {
+        strain::pad_momenta(&self.state, &mut self.work);
+        self.gradient_of_padded_momenta();
+    }
+
+    /// G of the present momenta, which have been padded.
+    pub(crate) fn gradient_of_padded_momenta(&mut self) {
         if let Some(kernels) = &mut self.eulerian {
             kernels.velocity_gradient(&self.reference, &self.state, &mut self.work);
             return;
         }
-        strain::pad_momenta(&self.state, &mut self.work);
         strain::velocity_gradient(&self.reference, &mut self.work);
     }
 

@@ -6,7 +6,7 @@ use jstsph_tensor::{Mat3, Vec3, cofactor, double_dot, tensor_cross};
 
 use crate::lines::LineFields;
 use crate::local_steps::{Groups, Levels, Part};
-use crate::model::{Formulation, Quadrature};
+use crate::model::{Formulation, Quadrature, Scheme};
 use crate::parallel;
 use crate::reference::{BodyReference, Reference};
 use crate::state::{State, Workspace};
@@ -20,6 +20,13 @@ use drift::{Drift, GradientOf, Rates};
 pub(crate) struct Strains {
     pub(crate) formulation: Formulation,
     pub(crate) quadrature: Quadrature,
+}
+
+/// Whether something beside the drift of the leapfrog asks for G, or knows it already.
+pub(crate) fn keeps_velocity_gradient(scheme: &Scheme) -> bool {
+    scheme.formulation == Formulation::EulerianKernel
+        || scheme.stabilisation.upwind != 0.0
+        || scheme.stabilisation.hourglass != 0.0
 }
 
 /// The momenta with a fourth number, zero.

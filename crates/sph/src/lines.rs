@@ -75,7 +75,7 @@ pub struct LineOperator {
 
 /// Points or particles in their lines, and the sums that go to them.
 #[derive(Clone, Debug)]
-pub(crate) struct Side {
+struct Side {
     parts: Parts,
     lines: usize,
     /// The item in each slot: line by line, row by row, lane by lane; without the repeated rows.
@@ -190,15 +190,6 @@ impl LineOperator {
     #[must_use]
     pub fn particles(&self) -> Lines<'_> {
         Lines(&self.particles)
-    }
-
-    /// Bytes of memory it holds.
-    #[must_use]
-    pub fn bytes(&self) -> usize {
-        let of = |side: &Side| {
-            size_of_val(&side.items[..]) + size_of_val(&side.slots[..]) + side.sums.bytes()
-        };
-        of(&self.points) + of(&self.particles)
     }
 }
 
@@ -356,13 +347,5 @@ impl<'a> Lines<'a> {
     #[must_use]
     pub fn slots(&self) -> &'a [u32] {
         &self.0.slots
-    }
-
-    /// Fraction of the items that have their sum in the lines.
-    #[must_use]
-    pub fn share(&self) -> f64 {
-        let slots = self.slots();
-        let there = slots.iter().filter(|slot| **slot != LineOperator::ALONE);
-        there.count() as f64 / slots.len() as f64
     }
 }

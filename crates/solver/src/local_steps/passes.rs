@@ -9,7 +9,7 @@ use crate::constraint::Stage;
 use crate::leapfrog::{Kick, Push};
 use crate::profile::Phase;
 use crate::simulation::Simulation;
-use crate::{SolverError, parallel, strain, stress};
+use crate::{SolverError, force, parallel, strain, stress};
 
 /// One over the steps of a level within one of level 0.
 pub(super) fn share(level: u8) -> f64 {
@@ -98,10 +98,7 @@ impl LocalSteps {
             let volume = &reference.volume[body.particles.clone()];
             let force = &mut self.fine_force[body.particles.clone()];
             groups.moving.for_each_run(levels, force, |first, force| {
-                body.gradient.divergences(first, stress, force);
-                for (force, volume) in force.iter_mut().zip(&volume[first..]) {
-                    *force /= *volume;
-                }
+                force::divergences_of_run(body, first, stress, &|a| volume[a], force);
             });
         }
     }
